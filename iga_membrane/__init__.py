@@ -1,0 +1,52 @@
+"""Droplets and liquid sheets as C1 spline membranes: static wetting and self-cleaning.
+
+Names are loaded on first use, so ``import iga_membrane`` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "errors": ("GeometryError", "OutputError", "SceneError", "SolveError"),
+    "splines": ("Space", "Table", "bspline_basis", "close_pole", "lagrange_basis", "line_basis",
+                "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
+    "surface.surface": ("Surface",),
+    "surface.kinematics": ("Kinematics",),
+    "surface.shapes": ("cap", "cylinder", "disc", "sheet", "sphere"),
+    "surface.refine": ("elevated", "refined"),
+    "surface.exchange": ("from_geomdl", "to_geomdl"),
+    "surface.supports": ("Fixed", "Joint", "Sector", "Sliding", "Symmetry"),
+    "surface.motion": ("Motion", "Spines"),
+    "solids": ("Plane",),
+    "terms": ("Centroid", "Gravity", "PlaneContactLine", "Pressure", "Scale", "SurfaceTension",
+              "Volume"),
+    "scenes.liquid": ("Discretization", "Liquid"),
+    "scenes.scene": ("Scene",),
+    "scenes.droplet": ("sessile_droplet",),
+    "scenes.scene_file": ("load_scene", "read_scene"),
+    "solver.options": ("SolverOptions",),
+    "solver.status": ("Status",),
+    "solver.solution": ("Solution",),
+    "solver.solve": ("solve",),
+    "view.picture": ("plot",),
+    "view.export": ("save",),
+}  # fmt: skip
+_MODULE = {name: module for module, names in _HOME.items() for name in names}
+
+__all__ = ["__version__", *sorted(_MODULE)]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULE:
+        raise AttributeError(f"module 'iga_membrane' has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

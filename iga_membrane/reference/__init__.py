@@ -1,0 +1,10 @@
+"""The independent witness: closed forms and axisymmetric solutions that share no code with the
+rest of the package (it imports numpy and scipy only).
+
+Units: surface tension 1, angles in degrees through the liquid, pressures liquid minus gas.
+"""
+
+from .caps import cap_on_plane
+from .young_laplace import drop_on_plane
+
+__all__ = ["cap_on_plane", "drop_on_plane"]

@@ -1,0 +1,1 @@
+"""Scenes: what is asked, as data."""

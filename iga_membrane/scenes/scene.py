@@ -1,0 +1,113 @@
+"""A scene: a surface, what it pays for, how it may move. Data only; nothing here solves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ..errors import SceneError
+from ..solids.plane import Plane
+from ..splines import Grading
+from ..surface.supports import Sector, Sliding, Support
+from ..surface.surface import Surface
+from ..terms import Constraint, Scale, SurfaceTension, Term
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything a solve needs to know.
+
+    Attributes
+    ----------
+    surface : the start, in world coordinates and the user's units.
+    terms : what the membrane pays for; a term that is not listed costs nothing.
+    supports : how edges and symmetry restrict the motion.
+    scale : units and frame of the computation; by default the surface's size and the tension.
+        Sliding edges lie in z = 0 of its frame.
+    grading : spread of the control points along the meridians.
+    ramp : load in [0, 1] to a scene of the same space, 1 being this scene: the way round if a
+        direct solve fails.
+    substrate : the solid that a sliding edge touches, for the audit and for pictures.
+    hold : axes along which the user asked for the centroid to be held.
+    kind : name of the family, which decides the measures of a solution.
+    description : the scene in words of the scene file, for the result.
+    warnings : what a user should know about the input.
+    """
+
+    surface: Surface
+    terms: Sequence[Term]
+    supports: Sequence[Support] = ()
+    scale: Scale | None = None
+    grading: Grading = field(default_factory=Grading)
+    ramp: Callable[[float], Scene] | None = field(default=None, repr=False)
+    substrate: Plane | None = None
+    hold: str = ""
+    kind: str = "membrane"
+    description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    warnings: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "terms", tuple(self.terms))
+        object.__setattr__(self, "supports", tuple(self.supports))
+        space = self.surface.space
+        if space.continuity < 1 and space.weights is not None:
+            raise SceneError("surface: C1 needed between the elements of a nurbs space")
+        names = [term.name for term in self.terms]
+        for name in names:
+            if names.count(name) > 1 and name not in ("gravity", "wetting"):
+                raise SceneError(f'terms: "{name}" is listed {names.count(name)} times')
+        if "pressure" in names and "volume" in names:
+            raise SceneError("terms: pressure and volume are both prescribed; give one of them")
+        if "surface_tension" not in names:
+            raise SceneError("terms: a membrane needs a SurfaceTension")
+        if self.scale is None:
+            tension = next(t.gamma for t in self.terms if isinstance(t, SurfaceTension))
+            object.__setattr__(self, "scale", Scale(self.surface.size, tension))
+
+    @property
+    def units(self) -> Scale:
+        """The scale, never None."""
+        assert self.scale is not None
+        return self.scale
+
+    @property
+    def sector(self) -> Sector:
+        """The part of a closed patch that is computed."""
+        return next((s for s in self.supports if isinstance(s, Sector)), Sector())
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The prescribed integrals."""
+        return tuple(t for t in self.terms if isinstance(t, Constraint))
+
+    def local_surface(self) -> Surface:
+        """The start in the scene's scale and frame; sliding edges exactly in z = 0.
+
+        Raises
+        ------
+        SceneError
+            If a sliding edge lies off the plane.
+        """
+        points = self.units.to_local(self.surface.points)
+        for support in self.supports:
+            if isinstance(support, Sliding):
+                edge = self.surface.space.edge_functions(support.edge)
+                off = float(np.abs(points[edge, 2]).max())
+                if off > 1e-6:
+                    raise SceneError(
+                        f"surface: its sliding edge {support.edge} lies {off:g} lengths off the "
+                        "plane; start with the edge in the plane"
+                    )
+                points[edge, 2] = 0.0
+        return self.surface.moved(points)
+
+    def local_terms(self) -> tuple[Term, ...]:
+        """The terms in the scene's scale and frame."""
+        return tuple(term.scaled(self.units) for term in self.terms)
+
+    def starting_from(self, surface: Surface) -> Scene:
+        """The same scene with another start (world coordinates)."""
+        return replace(self, surface=surface)

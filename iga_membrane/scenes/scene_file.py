@@ -1,0 +1,251 @@
+"""The scene file (TOML or JSON): read, check every key, build the scene. The contract is fixed."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..checks import choice, integer, number, suggestion, vector
+from ..errors import SceneError
+from ..solids.plane import Plane
+from .droplet import HOLDS, sessile_droplet
+from .liquid import MODELS, Discretization, Liquid
+from .scene import Scene
+
+SCHEMA = 1
+LARGEST_FILE = 10_000_000
+
+# Every table and key of the contract; those whose capability is not built are refused by name.
+KEYS: dict[str, tuple[str, ...]] = {
+    "": ("schema", "scene", "liquid", "gravity", "substrate", "particle", "droplet", "sheet",
+         "cell", "rings", "discretization", "solver", "path"),
+    "liquid": ("surface_tension", "density", "volume"),
+    "gravity": ("acceleration", "direction"),
+    "substrate": ("kind", "contact_angle", "radius", "spacing", "arrangement", "offset",
+                  "centers", "radii", "base"),
+    "particle": ("radius", "center", "density", "contact_angle", "motion"),
+    "droplet": ("hold",),
+    "sheet": ("boundary", "size", "pressure", "volume", "liquid_weight"),
+    "cell": ("shape", "size", "pressure"),
+    "rings": ("radius", "half_height", "volume", "pressure"),
+    "discretization": ("space", "degree", "elements", "model"),
+    "solver": ("motion", "stabilization", "contact", "penalty", "penetration_tolerance",
+               "contact_line", "start", "max_cpu_s", "max_memory_gb"),
+    "path": ("parameter", "values"),
+}  # fmt: skip
+SCENES = ("sessile_droplet", "liquid_sheet", "asperity_cell", "film_between_rings")
+SUBSTRATES = ("plane", "sphere", "sphere_lattice", "spheres", "none")
+
+
+@dataclass(frozen=True)
+class SceneFile:
+    """A scene file, read and checked.
+
+    Attributes
+    ----------
+    scene : what to solve.
+    solver : the solver's limits, by the names of ``SolverOptions``.
+    """
+
+    scene: Scene
+    solver: dict[str, float]
+
+
+def load_scene(path: str | Path) -> SceneFile:
+    """Read a scene file (.toml or .json).
+
+    Raises
+    ------
+    SceneError
+        Not readable, too large, not TOML/JSON, or any field wrong; the message names the field.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise SceneError(f"{path}: larger than {LARGEST_FILE} bytes; no scene file is")
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(f"{path}: cannot be read as text ({error})") from error
+    try:
+        if path.suffix == ".json":
+            data = json.loads(text, object_pairs_hook=_no_duplicates)
+        else:
+            data = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise SceneError(f"{path}: not a scene file ({error})") from error
+    return read_scene(data)
+
+
+def read_scene(data: Any) -> SceneFile:
+    """Build the scene from the tables of a scene file.
+
+    Parameters
+    ----------
+    data : nested mapping with the keys of the contract.
+
+    Raises
+    ------
+    SceneError
+    """
+    data = _table("", data)
+    if "schema" in data and data["schema"] != SCHEMA:
+        raise SceneError(
+            f"schema = {data['schema']!r}: this version reads schema {SCHEMA}; leave the key out "
+            "or convert the file"
+        )
+    if "scene" not in data:
+        raise SceneError(f"scene: missing; must be one of {', '.join(map(repr, SCENES))}")
+    kind = choice("scene", data["scene"], SCENES)
+    tables = {
+        name: _table(name, data.get(name, {}))
+        for name in KEYS
+        if name and name not in ("particle", "path")
+    }
+    for name in ("particle", "path"):
+        entries = data.get(name, [])
+        if not isinstance(entries, list):
+            raise SceneError(f"{name}: must be a list of tables, [[{name}]]")
+        for i, entry in enumerate(entries):
+            _check_numbers(f"{name}[{i}]", _table(name, entry, f"{name}[{i}]"))
+    for name, table in tables.items():
+        _check_numbers(name, table)
+    if kind != "sessile_droplet":
+        raise _later(f'scene = "{kind}"')
+    return _droplet(data, tables)
+
+
+def _droplet(data: Mapping[str, Any], tables: dict[str, Mapping[str, Any]]) -> SceneFile:
+    for name in ("sheet", "cell", "rings"):
+        if name in data:
+            raise SceneError(f'{name}: does not belong to scene = "sessile_droplet"; remove it')
+    for name in ("particle", "path"):
+        if data.get(name):
+            raise _later(f"[[{name}]]")
+    liquid, substrate = tables["liquid"], tables["substrate"]
+    for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
+        if field.split(".")[1] not in table:
+            raise SceneError(f"{field}: missing; a sessile droplet needs it")
+    kind = choice("substrate.kind", substrate.get("kind", "plane"), SUBSTRATES)
+    if kind != "plane":
+        raise _later(f'substrate.kind = "{kind}"')
+    for key in substrate:
+        if key not in ("kind", "contact_angle"):
+            raise SceneError(
+                f'substrate.{key}: a plane has no such field; remove it or choose another '
+                f"substrate.kind ({', '.join(SUBSTRATES[1:])})"
+            )
+    scene = sessile_droplet(
+        Plane(substrate["contact_angle"]),
+        volume=liquid["volume"],
+        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
+        gravity=_gravity(tables["gravity"]),
+        discretization=Discretization(**tables["discretization"]),
+        hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
+    )
+    return SceneFile(scene, _solver(tables["solver"]))
+
+
+def _gravity(table: Mapping[str, Any]) -> list[float]:
+    if "direction" in table and "acceleration" not in table:
+        raise SceneError("gravity.acceleration: missing, but gravity.direction is given")
+    size = number("gravity.acceleration", table.get("acceleration", 0.0), least=0.0)
+    direction = np.array(vector("gravity.direction", table.get("direction", [0.0, 0.0, -1.0])))
+    length = float(np.linalg.norm(direction))
+    if not length > 0:
+        raise SceneError("gravity.direction = [0, 0, 0]: must not be zero")
+    return [float(g) for g in size * direction / length]
+
+
+def _solver(table: Mapping[str, Any]) -> dict[str, float]:
+    built = {"motion": "spines", "contact": "exact", "start": "auto"}
+    words = {
+        "motion": ("spines", "cartesian"),
+        "contact": ("exact", "penalty"),
+        "contact_line": ("auto", "conforming", "trimmed", "adhesion", "line_load"),
+    }
+    for key, allowed in words.items():
+        if key in table:
+            choice(f"solver.{key}", table[key], allowed)
+    for key, only in built.items():
+        if table.get(key, only) != only:
+            raise _later(f'solver.{key} = "{table[key]}"')
+    if table.get("contact_line", "auto") not in ("auto", "conforming"):
+        raise _later(f'solver.contact_line = "{table["contact_line"]}"')
+    for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
+        if key in table:
+            number(f"solver.{key}", table[key], above=0.0)
+    return {key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table}
+
+
+def _table(name: str, value: Any, label: str | None = None) -> Mapping[str, Any]:
+    """A mapping with known keys only."""
+    label = name if label is None else label
+    if not isinstance(value, Mapping):
+        raise SceneError(f"{label or 'scene file'} = {value!r}: must be a table of keys and values")
+    for key in value:
+        if key not in KEYS[name]:
+            path = f"{label}.{key}" if label else str(key)
+            raise SceneError(
+                f"{path}: unknown key{suggestion(key, KEYS[name])} (known: {', '.join(KEYS[name])})"
+            )
+    return value
+
+
+_LIMITS: dict[str, dict[str, float]] = {
+    "surface_tension": {"above": 0.0},
+    "density": {"least": 0.0},
+    "volume": {"above": 0.0},
+    "acceleration": {"least": 0.0},
+    "contact_angle": {"above": 0.0, "most": 180.0},
+    "radius": {"above": 0.0},
+    "radii": {"above": 0.0},
+    "spacing": {"above": 0.0},
+    "size": {"above": 0.0},
+    "half_height": {"above": 0.0},
+}
+
+
+def _check_numbers(label: str, table: Mapping[str, Any]) -> None:
+    """Ranges of every number in a table, also of those that the scene does not use."""
+    texts = ("kind", "arrangement", "motion", "hold", "boundary", "shape", "space", "model",
+             "contact", "contact_line", "start", "parameter")  # fmt: skip
+    for key, value in table.items():
+        field = f"{label}.{key}"
+        if key in texts:
+            if not isinstance(value, str):
+                raise SceneError(f"{field} = {value!r}: must be text")
+        elif key == "liquid_weight":
+            if not isinstance(value, bool):
+                raise SceneError(f"{field} = {value!r}: must be true or false")
+        elif key in ("degree", "elements"):
+            integer(field, value, least=1 if key == "degree" else 3, most=4096)
+        else:
+            _check_nested(field, value, _LIMITS.get(key, {}))
+    if label == "discretization" and "model" in table:
+        choice("discretization.model", table["model"], MODELS)
+
+
+def _check_nested(field: str, value: Any, limits: dict[str, float]) -> None:
+    if isinstance(value, list):
+        for i, item in enumerate(value):
+            _check_nested(f"{field}[{i}]", item, limits)
+    else:
+        number(field, value, **limits)
+
+
+def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    keys = [key for key, _ in pairs]
+    for key in keys:
+        if keys.count(key) > 1:
+            raise SceneError(f"{key}: given {keys.count(key)} times in one table; give it once")
+    return dict(pairs)
+
+
+def _later(what: str) -> SceneError:
+    return SceneError(f"{what}: not available yet in this version")

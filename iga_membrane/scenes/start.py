@@ -1,0 +1,92 @@
+"""The start of a droplet: a rounded, squashed pancake of least energy.
+
+A flat disc of radius ``b`` whose edge is an elliptic arc (semi-axes ``rho`` and ``aspect * rho``)
+that is tangent to the disc and meets the plane at the contact angle. ``b = 0, aspect = 1`` is the
+spherical cap, the exact drop without gravity; large ``b`` is a puddle. Of all pancakes of the
+volume the one with the least energy is close enough to any sessile drop for Newton's method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..splines.quadrature import gauss
+
+Array = NDArray[np.float64]
+
+STEEPEST = 171.0
+"""Contact angle of the start at most (degrees, with gravity): flatter feet start nearly tangent to
+the plane and Newton's first steps would cross it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pancake:
+    """Profile of a rounded pancake, walked by arc length from the rim.
+
+    Attributes
+    ----------
+    flat : radius b of the flat top.
+    radius, aspect : of the elliptic arc.
+    turn : parameter range of the arc, from ``turn`` at the rim to 0 at the flat top.
+    """
+
+    flat: float
+    radius: float
+    aspect: float
+    turn: float
+
+    @property
+    def length(self) -> float:
+        """Arc length from the rim to the axis."""
+        return float(self._arc()[1][-1] + self.flat)
+
+    def __call__(self, fraction: Array) -> tuple[Array, Array]:
+        """``r, z`` at fractions of the arc length."""
+        angle, walked = self._arc()
+        s = np.asarray(fraction) * self.length
+        u = np.interp(s, walked, angle)
+        on_arc = s <= walked[-1]
+        r = np.where(on_arc, self.flat + self.radius * np.sin(u), self.length - s)
+        z = self.radius * self.aspect * (np.cos(u) - np.cos(self.turn))
+        return r, z
+
+    def _arc(self) -> tuple[Array, Array]:
+        """Parameters along the arc from the rim and the arc length walked."""
+        angle = np.linspace(self.turn, 0.0, 2001)
+        middle = 0.5 * (angle[1:] + angle[:-1])
+        speed = self.radius * np.hypot(np.cos(middle), self.aspect * np.sin(middle))
+        step = self.turn / 2000.0
+        return angle, np.concatenate([[0.0], np.cumsum(speed * step)])
+
+
+def least_energy_pancake(contact_angle: float, bond: float, volume: float) -> Pancake:
+    """The pancake of least energy (tension 1, density times gravity ``bond``).
+
+    Parameters
+    ----------
+    contact_angle : degrees; limited to ``STEEPEST`` if there is gravity.
+    """
+    steepest = STEEPEST if bond > 0 else 180.0
+    theta = np.radians(min(contact_angle, steepest))
+    flats = np.concatenate([[0.0], np.geomspace(1e-3, 3e3, 300)])[:, None]
+    u, w = gauss(20)
+    best = (np.inf, Pancake(0.0, 1.0, 1.0, theta))
+    for aspect in np.geomspace(0.3, 1.0, 13)[::-1] if bond > 0 else [1.0]:
+        turn = np.arctan2(np.sin(theta) / aspect, np.cos(theta))
+        angle = turn * u
+        r = flats + np.sin(angle)
+        z = aspect * (np.cos(angle) - np.cos(turn))
+        section = np.pi * r**2 * aspect * np.sin(angle) * turn
+        radius = (volume / (section @ w)) ** (1.0 / 3.0)
+        speed = np.hypot(np.cos(angle), aspect * np.sin(angle)) * turn
+        area = np.pi * flats[:, 0] ** 2 + 2 * np.pi * ((r * speed) @ w)
+        wet = np.pi * (flats[:, 0] + np.sin(turn)) ** 2
+        energy = radius**2 * (area - np.cos(theta) * wet) + bond * radius**4 * ((section * z) @ w)
+        k = int(energy.argmin())
+        if energy[k] < best[0]:
+            flat = float(flats[k, 0] * radius[k])
+            best = (energy[k], Pancake(flat, float(radius[k]), float(aspect), float(turn)))
+    return best[1]

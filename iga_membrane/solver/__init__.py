@@ -1,0 +1,1 @@
+"""Solving: what changes the unknowns."""

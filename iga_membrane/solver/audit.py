@@ -1,0 +1,145 @@
+"""Independent check of a state before it may be called a success.
+
+Nothing assembled by the solver is reused: doubled quadrature, the geometry of
+:mod:`iga_membrane.surface.kinematics`, the weak form with dual tangents, and volume as the flux of
+``x / 3`` instead of ``z e_z``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scenes.scene import Scene
+from ..surface.motion import Motion, sector_elements
+from ..surface.shapes import rational_matrix
+from ..surface.supports import Sector, Sliding
+from ..surface.surface import Surface
+from ..terms import BodyDensity, PlaneContactLine, SurfaceTension, Volume
+from .measures import ContactLine, contact_line
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Audit:
+    """Defects of a state, all relative.
+
+    Attributes
+    ----------
+    residual : norm of the weak form over the norm of its absolute contributions.
+    volume : over the prescribed volume; 0 where none is prescribed.
+    force : vertical force balance ``p A_wet - line - weight`` over ``p A_wet`` plus the line's
+        force, with the line's force from Young's angle.
+    line : the same with the line's force from the spline's own tangents: converges slower, so it
+        tells how well the line is resolved.
+    angle : mean of measured minus prescribed contact angle, degrees.
+    penetration : depth below the plane over the scene's length, on a sampling four times denser
+        than the quadrature.
+    """
+
+    residual: float
+    volume: float = 0.0
+    force: float = 0.0
+    line: float = 0.0
+    angle: float = 0.0
+    penetration: float = 0.0
+
+
+def audit(scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, points: int) -> Audit:
+    """Check a state.
+
+    Parameters
+    ----------
+    surface : in the scene's scale.
+    motion : the directions in which the residual is tested.
+    body : body density of the Lagrangian, so minus the pressure.
+    points : the solver's Gauss points per direction.
+    """
+    space, sector = surface.space, scene.sector
+    table = space.table(2 * points, sector_elements(space, sector))
+    k = surface.on(table)
+    terms = scene.local_terms()
+    tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
+    area = k.area_element * table.weights
+    # int gamma a^alpha . u_,alpha dA + int e u . n dA: membrane and pressure
+    dual = tension * area[..., None, None] * k.dual_tangents
+    load = (_density(body, k.position) * area)[..., None] * k.normal
+    force = (
+        table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
+        + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
+        + table.values.transpose(0, 2, 1) @ load
+    )
+    total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
+    _scatter(total, absolute, motion, table.functions, force)
+    lines = [t for t in terms if isinstance(t, PlaneContactLine)]
+    ring = np.arange(space.bases[0].elements // sector.copies)
+    for term in lines:
+        edge = space.edge_table(term.edge, 2 * points, ring)
+        tangent = edge.d @ surface.points[edge.functions]
+        outward = np.stack([tangent[..., 1], -tangent[..., 0], 0 * tangent[..., 0]], axis=-1)
+        pull = edge.values.transpose(0, 2, 1) @ (
+            term.strength * edge.weights[..., None] * outward
+        )
+        _scatter(total, absolute, motion, edge.functions, pull)
+    residual = float(np.linalg.norm(total[:-1]) / np.linalg.norm(absolute[:-1]))
+    inside = sector.copies * float(
+        (np.einsum("eqi,eqi->eq", k.position, k.normal) * area).sum() / 3.0
+    )
+    target = next((t.value for t in terms if isinstance(t, Volume)), None)
+    missing = abs(inside / target - 1.0) if target else 0.0
+    if not lines:
+        return Audit(residual, missing)
+    line = contact_line(surface, lines[0].edge, 2 * points)
+    theta = np.radians(lines[0].contact_angle)
+    force_defect, line_defect = _balance(line, body, tension, theta, inside)
+    mean = float(line.angle @ line.arc / line.arc.sum())
+    depth = 0.0
+    if any(isinstance(s, Sliding) for s in scene.supports):
+        depth = max(0.0, -_lowest(surface, points, sector))
+    return Audit(
+        residual, missing, force_defect, line_defect, float(np.degrees(mean - theta)), depth
+    )
+
+
+def _density(body: BodyDensity, x: Array) -> Array:
+    return np.asarray(body.constant + x @ np.array(body.gradient))
+
+
+def _scatter(
+    total: Array, absolute: Array, motion: Motion, functions: NDArray[np.int64], force: Array
+) -> None:
+    work = np.einsum("eai,eai->ea", force, motion.directions[functions])
+    where = motion.unknowns[functions]
+    np.add.at(total, where, work)
+    np.add.at(absolute, where, np.abs(work))
+
+
+def _balance(
+    line: ContactLine, body: BodyDensity, tension: float, theta: float, inside: float
+) -> tuple[float, float]:
+    """Vertical balance of the drop, with Young's and with the measured angle."""
+    # wetted area and its first moments by Green's theorem, counterclockwise
+    x, y = line.position[:, 0], line.position[:, 1]
+    nx, ny = line.tangent[:, 1] * line.arc, -line.tangent[:, 0] * line.arc
+    wet = float(0.5 * (x @ nx + y @ ny))
+    mx, my = float(0.5 * (x * x) @ nx), float(0.5 * (y * y) @ ny)
+    gx, gy, gz = body.gradient
+    push = -(body.constant * wet + gx * mx + gy * my)
+    weight = gz * inside
+    young = tension * np.sin(theta) * float(line.arc.sum())
+    measured = -tension * float(line.conormal[:, 2] @ line.arc)
+    scale = abs(push) + abs(young) + abs(weight)
+    return abs(push - young - weight) / scale, abs(push - measured - weight) / scale
+
+
+def _lowest(surface: Surface, points: int, sector: Sector) -> float:
+    """Smallest z on a sampling four times denser than the quadrature."""
+    one, two = surface.space.bases
+    n1 = 4 * points * one.elements // sector.copies
+    s = np.linspace(one.breaks[0], one.breaks[-1], n1 * sector.copies + 1)[: n1 + 1]
+    t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points * two.elements + 1)
+    heights = one.matrix(s) @ surface.net[..., 2]
+    return float((heights @ rational_matrix(surface.space, t).T).min())

@@ -1,0 +1,214 @@
+"""Symmetric matrices by size: dense LAPACK when small, sparse with fixed pattern when large.
+
+Both solve ``K s - B m = -g, B^T s = -c`` (a Newton step with multipliers) and count the negative
+eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dsytrf, dsytrs
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+DENSE_LIMIT = 600
+"""Up to this many unknowns a dense factorization costs less than a sparse one (docs/results)."""
+
+
+class SingularMatrix(ArithmeticError):
+    """The factorization broke down or its solution misses the right-hand side."""
+
+
+class SparsePattern:
+    """Where element blocks land in a compressed column matrix, found once.
+
+    Parameters
+    ----------
+    size : number of unknowns.
+    unknowns : (elements, local) unknown of each local function, -1 where fixed.
+    """
+
+    def __init__(self, size: int, unknowns: Index) -> None:
+        self.size = size
+        keys = _keys(size, unknowns)
+        inside = keys < size * size
+        self.entries, position = np.unique(keys[inside], return_inverse=True)
+        self.slots = np.full(keys.shape, len(self.entries))
+        self.slots[inside] = position.ravel()
+        columns, self.rows = np.divmod(self.entries, size)
+        self.starts = np.searchsorted(columns, np.arange(size + 1))
+        self.diagonal = np.searchsorted(self.entries, np.arange(size) * (size + 1))
+
+    def positions(self, unknowns: Index) -> Index:
+        """Slots of other blocks that lie inside the pattern."""
+        keys = _keys(self.size, unknowns)
+        slots = np.searchsorted(self.entries, keys)
+        return np.asarray(np.where(keys < self.size**2, slots, len(self.entries)))
+
+
+def _keys(size: int, unknowns: Index) -> Index:
+    columns, rows = unknowns[:, :, None], unknowns[:, None, :]
+    return np.where((columns >= 0) & (rows >= 0), columns * size + rows, size * size).ravel()
+
+
+class Matrix:
+    """Symmetric matrix assembled from element blocks.
+
+    Parameters
+    ----------
+    size : number of unknowns.
+    pattern : None for dense storage.
+    """
+
+    def __init__(self, size: int, pattern: SparsePattern | None = None) -> None:
+        self.size = size
+        self.pattern = pattern
+        self.data = np.zeros(size * size if pattern is None else len(pattern.entries))
+
+    def add(self, unknowns: Index, blocks: Array) -> None:
+        """Add element blocks (elements, local, local)."""
+        if self.pattern is None:
+            slots = _keys(self.size, unknowns)
+        elif len(self.pattern.slots) == blocks.size:
+            slots = self.pattern.slots
+        else:
+            slots = self.pattern.positions(unknowns)
+        self.data += np.bincount(slots, blocks.ravel(), len(self.data) + 1)[:-1]
+
+    def diagonal(self) -> Array:
+        """(n,)"""
+        where = slice(None, None, self.size + 1) if self.pattern is None else self.pattern.diagonal
+        return np.asarray(self.data[where])
+
+    def dense(self) -> Array:
+        """(n, n)"""
+        if self.pattern is None:
+            return self.data.reshape(self.size, self.size)
+        return np.asarray(self.sparse().toarray())
+
+    def sparse(self, shift: Array | None = None) -> Any:
+        """``scipy.sparse.csc_array``, with a shift added to the diagonal."""
+        pattern = self.pattern
+        assert pattern is not None
+        data = self.data if shift is None else self.data.copy()
+        if shift is not None:
+            data[pattern.diagonal] += shift
+        return csc_array((data, pattern.rows, pattern.starts), (self.size, self.size))
+
+    def __matmul__(self, vector: Array) -> Array:
+        if self.pattern is None:
+            return np.asarray(self.dense() @ vector)
+        return np.asarray(self.sparse() @ vector)
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """Solution of the bordered system.
+
+    Attributes
+    ----------
+    unknowns : (n,) step ``s``; multipliers : (m,) new values ``m``.
+    index : negative eigenvalues of ``K`` (with the shift) on the null space of ``B^T``.
+    """
+
+    unknowns: Array
+    multipliers: Array
+    index: int
+
+
+class Bordered:
+    """Factorization of ``[[K + shift, B], [B^T, 0]]``.
+
+    Raises
+    ------
+    SingularMatrix
+        If the factorization breaks down.
+    """
+
+    def __init__(self, matrix: Matrix, border: Array, shift: Array | None = None) -> None:
+        self._n, self._m = border.shape
+        self._border = border
+        self._shift = shift
+        self._matrix = matrix
+        if matrix.pattern is None:
+            self._factor_dense(shift)
+        else:
+            self._factor_sparse(shift)
+
+    def solve(self, top: Array, bottom: Array) -> tuple[Array, Array]:
+        """``K s + B q = top``, ``B^T s = bottom``; one step of iterative refinement."""
+        s, q = self._solve_once(top, bottom)
+        r_top, r_bottom = self._defect(s, q, top, bottom)
+        ds, dq = self._solve_once(r_top, r_bottom)
+        s, q = s + ds, q + dq
+        r_top, r_bottom = self._defect(s, q, top, bottom)
+        miss = np.linalg.norm(np.append(r_top, r_bottom))
+        size = np.linalg.norm(np.append(top, bottom))
+        if not miss <= 1e-8 * size:
+            raise SingularMatrix(f"the linear solve leaves a relative defect of {miss / size:.1e}")
+        return s, q
+
+    def _defect(self, s: Array, q: Array, top: Array, bottom: Array) -> tuple[Array, Array]:
+        r = top - self._matrix @ s - self._border @ q
+        if self._shift is not None:
+            r = r - self._shift * s
+        return r, bottom - self._border.T @ s
+
+    def _factor_dense(self, shift: Array | None) -> None:
+        n, m = self._n, self._m
+        full = np.zeros((n + m, n + m), order="F")
+        full[:n, :n] = self._matrix.dense()
+        if shift is not None:
+            full[np.arange(n), np.arange(n)] += shift
+        full[:n, n:] = self._border
+        full[n:, :n] = self._border.T
+        if not np.isfinite(full).all():
+            raise SingularMatrix("the matrix has entries that are not finite")
+        # LAPACK's blocked driver needs a work array of 64 columns to run at full speed
+        self._ldl, self._pivots, info = dsytrf(full, lower=1, lwork=64 * (n + m))
+        if info:
+            raise SingularMatrix("the matrix is singular")
+        self.index = _negative_pivots(self._ldl, self._pivots) - m
+
+    def _factor_sparse(self, shift: Array | None) -> None:
+        try:
+            self._lu = splu(
+                self._matrix.sparse(shift),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError as error:
+            raise SingularMatrix(str(error)) from error
+        # Without row exchanges U = D L^T, so the signs of its diagonal are the inertia of K;
+        # the Schur complement of the border adds its own (Sylvester, Haynsworth).
+        negative = int((self._lu.U.diagonal() < 0).sum())
+        self._border_solved = self._lu.solve(self._border) if self._m else self._border
+        self._schur = -self._border.T @ self._border_solved
+        negative += int((np.linalg.eigvalsh(self._schur) < 0).sum()) if self._m else 0
+        self.index = negative - self._m
+
+    def _solve_once(self, top: Array, bottom: Array) -> tuple[Array, Array]:
+        if self._matrix.pattern is None:
+            both, info = dsytrs(self._ldl, self._pivots, np.append(top, bottom), lower=1)
+            both = both.ravel()
+            return both[: self._n], both[self._n :]
+        s = self._lu.solve(top)
+        if not self._m:
+            return s, bottom
+        q = np.linalg.solve(self._schur, bottom - self._border.T @ s)
+        return s - self._border_solved @ q, q
+
+
+def _negative_pivots(ldl: Array, pivots: Index) -> int:
+    """Negative eigenvalues of the block diagonal factor of LAPACK's Bunch-Kaufman LDL^T."""
+    d = np.diag(ldl)
+    # a 2 x 2 pivot block (both entries of ``pivots`` negative) is always indefinite: one of each
+    return int((d[pivots > 0] < 0).sum() + (pivots < 0).sum() // 2)

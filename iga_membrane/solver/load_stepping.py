@@ -1,0 +1,102 @@
+"""Load stepping with halving: the way round where a direct solve fails."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import GeometryError
+from ..scenes.scene import Scene
+from ..surface.reparametrize import arc_length
+from ..surface.surface import Surface
+from .assembly import Assembly
+from .newton import NewtonOptions, NewtonResult, newton
+from .status import Status
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LoadStep:
+    """One attempted load: its Newton iterations and how it ended (None: converged)."""
+
+    load: float
+    iterations: int
+    status: Status | None
+
+
+@dataclass(eq=False)
+class LoadPath:
+    """End of load stepping: the Newton result at the last load tried and every attempt."""
+
+    result: NewtonResult
+    steps: list[LoadStep] = field(default_factory=list)
+    last_good: float = 0.0
+
+
+def load_stepping(
+    ramp: Callable[[float], Scene],
+    assembly: Assembly,
+    options: NewtonOptions,
+    smallest: float,
+    report: Callable[[float], None] = lambda load: None,
+) -> LoadPath:
+    """From the ramp's own start at load 0 to load 1, in steps that grow and halve.
+
+    Parameters
+    ----------
+    ramp : load to scene; all scenes share the assembly's space and supports.
+    smallest : step of the load below which to give up, STALLED.
+    report : called with every load reached.
+    """
+    scene = ramp(0.0)
+    assembly.load(scene)
+    result = newton(assembly, scene.local_surface(), None, scene.grading, options)
+    path = LoadPath(result, [LoadStep(0.0, len(result.iterations), result.status)])
+    load, step = 0.0, 0.25
+    surface, multipliers = result.surface, result.multipliers
+    while result.status is None and load < 1.0:
+        target = min(1.0, load + step)
+        scene = ramp(target)
+        assembly.load(scene)
+        result = _attempt(assembly, scene, surface, multipliers, options)
+        path.steps.append(LoadStep(target, len(result.iterations), result.status))
+        if result.status is None and result.index <= 0:
+            load, surface, multipliers = target, result.surface, result.multipliers
+            path.result, path.last_good = result, load
+            report(load)
+            step *= 1.5 if len(result.iterations) > 5 else 2.0
+            continue
+        if result.status is Status.INTERRUPTED:
+            path.result = result
+            return path
+        step *= 0.5
+        if step < smallest:
+            reason = result.message or f"{result.index} negative eigenvalues"
+            result.surface, result.multipliers = surface, multipliers
+            result.status = Status.STALLED
+            result.message = (
+                f"load stepping stopped at {load:.4g} of the load, its step below {smallest:g} "
+                f"({reason})"
+            )
+            path.result = result
+            return path
+        result.status = None
+    return path
+
+
+def _attempt(
+    assembly: Assembly,
+    scene: Scene,
+    surface: Surface,
+    multipliers: Array,
+    options: NewtonOptions,
+) -> NewtonResult:
+    try:
+        start = arc_length(surface, scene.grading)
+    except (GeometryError, np.linalg.LinAlgError) as error:
+        return NewtonResult(surface, multipliers, Status.NONFINITE, str(error))
+    return newton(assembly, start, multipliers, scene.grading, options)

@@ -1,0 +1,162 @@
+"""What a state measures: energies, areas, heights, angles, in the names of the result file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scenes.scene import Scene
+from ..splines.quadrature import gauss
+from ..splines.space import EDGES
+from ..surface.surface import Surface
+from ..terms import BodyDensity, Gravity, Scale, SurfaceTension
+from ..terms import variations as vary
+from ..terms.contact_line import wetted_area
+from .assembly import Assembly
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLine:
+    """Geometry along a contact line, at quadrature points of the whole line.
+
+    Attributes
+    ----------
+    position, tangent, conormal : (k, 3); unit tangent ``a_c`` along the edge's parameter, unit
+        conormal tangent to the membrane and out of it.
+    angle : (k,) between membrane and plane through the liquid, radians.
+    arc : (k,) quadrature weights of arc length.
+    """
+
+    position: Array
+    tangent: Array
+    conormal: Array
+    angle: Array
+    arc: Array
+
+
+def contact_line(surface: Surface, edge: str = "xi2=0", points: int | None = None) -> ContactLine:
+    """Line geometry from exact spline tangents (paper eqs 33-34), on the plane z = 0."""
+    space = surface.space
+    along, end = EDGES[edge]
+    basis = space.bases[along]
+    u, w = gauss(points or space.degree + 1)
+    t = (basis.breaks[:-1, None] + basis.sizes[:, None] * u).ravel()
+    xi = np.empty((len(t), 2))
+    xi[:, along] = t
+    xi[:, 1 - along] = space.bases[1 - along].breaks[-end]
+    k = surface.at(xi, 1)
+    speed = np.linalg.norm(k.tangents[:, along], axis=1)
+    tangent = k.tangents[:, along] / speed[:, None]
+    conormal = np.cross(tangent, k.normal)
+    # out of the membrane: against the other tangent at its start, along it at its end
+    across = np.einsum("ki,ki->k", conormal, k.tangents[:, 1 - along])
+    conormal = np.where(((across > 0) == (end == 0))[:, None], -conormal, conormal)
+    # atan2 keeps its digits where the membrane is nearly tangent to the plane
+    angle = np.arctan2(np.linalg.norm(k.normal[:, :2], axis=1), k.normal[:, 2])
+    weights = speed * (basis.sizes[:, None] * w).ravel()
+    return ContactLine(k.position, tangent, conormal, angle, weights)
+
+
+def measures(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> dict[str, float]:
+    """Measures of a state for the full body, in the user's units.
+
+    Parameters
+    ----------
+    surface : in the scene's scale.
+    """
+    scale = scene.units
+    values = energies(scene, assembly, surface)
+    body = assembly.density(multipliers)
+    values["pressure"] = -body.constant * scale.pressure
+    values["volume"] = volume(assembly, surface) * scale.length**3
+    if scene.kind == "sessile_droplet":
+        values |= _droplet(surface, values["A_wet"], body, scale)
+    return values
+
+
+def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, float]:
+    """Energies by kind and areas; the potential energy of weight is zero at the origin."""
+    scale, copies, table = scene.units, assembly.copies, assembly.table
+    at = vary.element_points(table, surface.points)
+    local = scene.local_terms()
+    gravity = sum((t.density() for t in local if isinstance(t, Gravity)), BodyDensity())
+    area, (weight,) = vary.energies(table, at, [gravity])
+    tension = sum(t.gamma for t in local if isinstance(t, SurfaceTension))
+    lines = sum(term.energy(edge, surface.points) for term, edge in assembly.lines)
+    wet = sum(wetted_area(edge, surface.points) for _, edge in assembly.lines)
+    e_surf = copies * (tension * area + lines) * scale.energy
+    e_grav = copies * float(weight) * scale.energy + _world_weight(scene, assembly, surface)
+    total = copies * assembly.energies(surface).total * scale.energy + (
+        e_grav - copies * float(weight) * scale.energy
+    )
+    return {
+        "energy": total,
+        "E_surf": e_surf,
+        "E_grav": e_grav,
+        "A_LG": copies * area * scale.length**2,
+        "A_wet": copies * wet * scale.length**2,
+    }
+
+
+def volume(assembly: Assembly, surface: Surface) -> float:
+    """Liquid volume of the full body in the scene's scale, as the flux of ``z e_z``."""
+    at = vary.element_points(assembly.table, surface.points)
+    _, (inside,) = vary.energies(assembly.table, at, [BodyDensity(1.0)])
+    return float(assembly.copies * inside)
+
+
+def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
+    """Potential energy of the frame's origin: weight times its height."""
+    origin = np.array(scene.units.origin)
+    if not origin.any():
+        return 0.0
+    inside = volume(assembly, surface) * scene.units.length**3
+    pull = [
+        t.density_of_liquid * np.array(t.acceleration)
+        for t in scene.terms
+        if isinstance(t, Gravity)
+    ]
+    return float(-inside * sum(pull, np.zeros(3)) @ origin)
+
+
+def _droplet(
+    surface: Surface, wet: float, body: BodyDensity, scale: Scale
+) -> dict[str, float]:
+    """Heights, radii and angle of a drop on a plane."""
+    net = surface.net
+    apex = net[0, -1]
+    line = contact_line(surface)
+    p_base = -body.constant * scale.pressure
+    at_apex = -(body.constant + float(np.dot(body.gradient, apex))) * scale.pressure
+    return {
+        "height": float(apex[2]) * scale.length,
+        "equator_radius": _equator(surface) * scale.length,
+        "contact_radius": float(np.sqrt(wet / np.pi)),
+        "p_base": p_base,
+        "p_apex": at_apex,
+        "contact_angle_measured": float(np.degrees(line.angle @ line.arc / line.arc.sum())),
+    }
+
+
+def _equator(surface: Surface) -> float:
+    """Largest distance from the apex's axis, by zooming in on it along the meridians."""
+    apex = surface.net[0, -1]
+    ring = surface.space.bases[0]
+    phi = np.linspace(ring.breaks[0], ring.breaks[-1], 9)[:-1]
+    low, high = 0.0, 1.0
+    best = 0.0
+    for _ in range(6):
+        t = np.linspace(low, high, 41)
+        xi = np.stack(np.meshgrid(phi, t, indexing="ij"), axis=-1)
+        offset = (surface.at(xi, 1).position - apex)[..., :2]
+        radius = np.linalg.norm(offset, axis=-1).max(axis=0)
+        k = int(radius.argmax())
+        best = float(radius[k])
+        low, high = t[max(k - 1, 0)], t[min(k + 1, 40)]
+    return best

@@ -1,0 +1,41 @@
+"""Choices of a solve, checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..checks import integer, number
+
+
+@dataclass(frozen=True)
+class SolverOptions:
+    """How to solve; every tolerance is relative to the scene's own length and tension.
+
+    Attributes
+    ----------
+    tolerance : largest displacement of the last Newton step over the scene's length.
+    max_iterations : Newton iterations at one load.
+    min_load_step : load stepping stops below this part of the load.
+    quadrature : Gauss points per direction; ``degree`` for splines, ``degree + 1`` for Lagrange
+        spaces if None.
+    max_cpu_s : CPU seconds after which the solve stops, INTERRUPTED.
+    max_memory_gb : a scene whose matrices would need more is refused.
+    audit : whether to check the result on an independent path; without it, UNVERIFIED.
+    """
+
+    tolerance: float = 1e-8
+    max_iterations: int = 50
+    min_load_step: float = 1e-3
+    quadrature: int | None = None
+    max_cpu_s: float = 600.0
+    max_memory_gb: float = 8.0
+    audit: bool = True
+
+    def __post_init__(self) -> None:
+        number("solver.tolerance", self.tolerance, least=1e-14, most=1e-2)
+        integer("solver.max_iterations", self.max_iterations, least=1, most=100_000)
+        number("solver.min_load_step", self.min_load_step, least=1e-9, most=1.0)
+        if self.quadrature is not None:
+            integer("solver.quadrature", self.quadrature, least=1, most=64)
+        number("solver.max_cpu_s", self.max_cpu_s, above=0.0)
+        number("solver.max_memory_gb", self.max_memory_gb, above=0.0)

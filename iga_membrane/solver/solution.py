@@ -1,0 +1,147 @@
+"""A solution is a record: status, state, measures, history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..scenes.scene import Scene
+from ..surface.kinematics import Kinematics
+from ..surface.surface import Surface
+from ..terms import BodyDensity, SurfaceTension
+from .audit import Audit
+from .load_stepping import LoadStep
+from .newton import Iteration
+from .status import Status
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What a solve found.
+
+    Attributes
+    ----------
+    scene : what was asked.
+    status : how the solve ended; message : one sentence with cause and remedy.
+    surface : the state, in world coordinates and the user's units.
+    measures : energies, areas, heights, pressures, by the names of the result file.
+    multipliers : of the constraints, by name, in the user's units.
+    body : energy per volume of the Lagrangian in local, dimensionless units: minus the pressure.
+    index : negative eigenvalues; lambda_min : smallest one (tension over squared length).
+    audit : relative defects found by the independent check, or None.
+    hold_force : (3,) total force that holds the centroid.
+    iterations : the Newton iterations; load_steps : the loads tried.
+    cpu_seconds : by what they were spent on.
+    """
+
+    scene: Scene
+    status: Status
+    message: str
+    surface: Surface = field(repr=False)
+    measures: Mapping[str, float] = field(repr=False)
+    multipliers: Mapping[str, float] = field(repr=False)
+    body: BodyDensity = field(repr=False)
+    index: int | None
+    lambda_min: float | None
+    audit: Audit | None = field(repr=False)
+    hold_force: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), repr=False)
+    unknowns: int = 0
+    iterations: Sequence[Iteration] = field(default=(), repr=False)
+    load_steps: Sequence[LoadStep] = field(default=(), repr=False)
+    cpu_seconds: Mapping[str, float] = field(default_factory=dict, repr=False)
+    warnings: Sequence[str] = ()
+    kind: str | None = None
+
+    @property
+    def success(self) -> bool:
+        """Converged, audited and stable."""
+        return self.status is Status.CONVERGED_STABLE
+
+    @property
+    def newton_iterations(self) -> int:
+        """All Newton iterations, of every load."""
+        return sum(step.iterations for step in self.load_steps)
+
+    def pressure(self, points: Array) -> Array:
+        """Pressure, liquid minus gas, at world points (..., 3): paper eq. (21)."""
+        scale = self.scene.units
+        local = scale.to_local(points)
+        density = self.body.constant + local @ np.array(self.body.gradient)
+        return np.asarray(-density * scale.pressure)
+
+    def laplace_residual(self, kinematics: Kinematics) -> Array:
+        """Out-of-plane balance ``2 H gamma + p``, eq. (20), zero at equilibrium.
+
+        H is exact from the spline's second derivatives; it converges two orders slower than the
+        shape, so this is an error indicator.
+        """
+        return np.asarray(
+            2.0 * kinematics.mean_curvature * self._tension + self.pressure(kinematics.position)
+        )
+
+    def mean_curvature(self, kinematics: Kinematics) -> Array:
+        """H from the pressure, ``-p / (2 gamma)``: converges faster than the spline's own H."""
+        return np.asarray(-self.pressure(kinematics.position) / (2.0 * self._tension))
+
+    def in_plane_residual(self, kinematics: Kinematics) -> Array:
+        """In-plane balance ``sigma^ab_;b``, eq. (18), as contravariant components (..., 2).
+
+        ``sigma^ab = gamma a^ab`` and the metric is covariantly constant, so this is rounding for
+        any shape; it tests the Christoffel symbols of the geometry.
+        """
+        inverse, gamma = kinematics.inverse_metric, kinematics.christoffel
+        second = kinematics.second
+        assert second is not None
+        # a^ab_,c = -a^ad (a_de,c) a^eb
+        slope = np.einsum("...aci,...bi->...abc", second, kinematics.tangents)
+        metric_slope = slope + np.swapaxes(slope, -3, -2)
+        change = -np.einsum("...ad,...dec,...eb->...abc", inverse, metric_slope, inverse)
+        divergence = (
+            np.einsum("...abb->...a", change)
+            + np.einsum("...bda,...db->...a", gamma, inverse)
+            + np.einsum("...bdb,...ad->...a", gamma, inverse)
+        )
+        return np.asarray(self._tension * divergence)
+
+    @property
+    def _tension(self) -> float:
+        return sum(t.gamma for t in self.scene.terms if isinstance(t, SurfaceTension))
+
+    def summary(self) -> str:
+        """Status, measures, effort, in a few lines."""
+        lines = [f"{self.status.name}: {self.message}"]
+        lines += [f"  {name:<24}{value: .10g}" for name, value in self.measures.items()]
+        if self.lambda_min is not None:
+            lines.append(
+                f"  {'stability':<24} index {self.index}, smallest eigenvalue "
+                f"{self.lambda_min:.4g} ({self.scene.sector.model} model)"
+            )
+        if self.audit:
+            defects = ", ".join(f"{k} {v:.1e}" for k, v in vars(self.audit).items())
+            lines.append(f"  {'audit':<24} {defects}")
+        seconds = ", ".join(f"{k} {v:.3f}" for k, v in self.cpu_seconds.items())
+        lines.append(
+            f"  {'effort':<24} {self.unknowns} unknowns, {self.newton_iterations} iterations, "
+            f"{len(self.load_steps)} load steps; CPU s: {seconds}"
+        )
+        lines += [f"  warning: {text}" for text in self.warnings]
+        return "\n".join(lines)
+
+    def plot(self, path: str | Path | None = None, **options: Any) -> Any:
+        """Picture of the solution (:func:`iga_membrane.view.picture.plot`)."""
+        from ..view.picture import plot
+
+        return plot(self, path, **options)
+
+    def save(self, path: str | Path) -> None:
+        """Write the surface (.vtu), the result (.json) or the state (.npz)."""
+        from ..view.export import save
+
+        save(self, Path(path))

@@ -1,0 +1,293 @@
+"""The verb: scene in, solution out, with a true status."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import process_time
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import SceneError, SolveError
+from ..scenes.scene import Scene
+from ..splines import Grading
+from ..surface.motion import Motion
+from ..surface.surface import Surface
+from ..terms import Centroid
+from .assembly import Assembly
+from .audit import Audit, audit
+from .linear import Bordered, SingularMatrix
+from .load_stepping import LoadStep, load_stepping
+from .measures import measures
+from .newton import NewtonOptions, NewtonResult, newton
+from .options import SolverOptions
+from .solution import Solution
+from .stability import Stability, stability
+from .status import Status
+
+Array = NDArray[np.float64]
+log = logging.getLogger("iga_membrane")
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """What the audit lets pass; beyond, the status is not a success.
+
+    Attributes
+    ----------
+    residual : weak form on doubled quadrature.
+    volume : relative error of the volume.
+    force : vertical balance of the drop.
+    line : the same from the spline's own contact angle.
+    angle : error of the mean contact angle over the angle to the nearer of 0 and 180 degrees.
+    penetration : depth below the substrate over the scene's length.
+    balance : force that nothing balances, over tension times length plus weight.
+    """
+
+    residual: float = 1e-4
+    volume: float = 1e-5
+    force: float = 1e-3
+    line: float = 1e-2
+    angle: float = 0.1
+    penetration: float = 1e-6
+    balance: float = 1e-6
+
+
+TOLERANCE = Tolerance()
+
+
+def solve(
+    scene: Scene,
+    options: SolverOptions | None = None,
+    *,
+    on_fail: Literal["raise", "return"] = "raise",
+    report: Callable[[float], None] = lambda load: None,
+) -> Solution:
+    """Find the equilibrium of a scene.
+
+    Direct Newton from the scene's start; if that fails or ends unstable, load stepping along the
+    scene's ramp. The state is then measured, its stability decided and audited on an independent
+    path.
+
+    Parameters
+    ----------
+    options : tolerances and limits.
+    on_fail : "raise" a :class:`SolveError` that carries the solution, or "return" it.
+    report : called with every load reached, for progress.
+
+    Raises
+    ------
+    SceneError
+        Before any work, if the scene is ill-posed or too large for the memory allowed.
+    SolveError
+        If the status is not ``CONVERGED_STABLE`` and ``on_fail`` is "raise".
+    """
+    options = options or SolverOptions()
+    started = process_time()
+    assembly = Assembly(scene, options.quadrature)
+    _check_memory(assembly, options)
+    settings = NewtonOptions(
+        options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
+    )
+    result, steps = _iterate(scene, assembly, settings, options, report)
+    assembly.load(scene)
+    solution = _conclude(scene, assembly, result, steps, options, started)
+    log.debug("%s: %s", solution.status.name, solution.message)
+    if not solution.success and on_fail == "raise":
+        raise SolveError(f"{solution.status.name}: {solution.message}", solution)
+    return solution
+
+
+def _check_memory(assembly: Assembly, options: SolverOptions) -> None:
+    """Tables, blocks and factors, from counts; refuse before allocating the large ones."""
+    elements, points, local = assembly.table.values.shape
+    need = 8.0 * elements * (14.0 * points * local + 6.0 * local**2) + 4e3 * assembly.size
+    if need > options.max_memory_gb * 1e9:
+        raise SceneError(
+            f"solver.max_memory_gb = {options.max_memory_gb:g}: this mesh needs about "
+            f"{need / 1e9:.1f} GB; raise the limit or choose fewer elements"
+        )
+
+
+def _iterate(
+    scene: Scene,
+    assembly: Assembly,
+    settings: NewtonOptions,
+    options: SolverOptions,
+    report: Callable[[float], None],
+) -> tuple[NewtonResult, list[LoadStep]]:
+    """Direct Newton, then load stepping where it failed or ended on a saddle."""
+    direct = newton(assembly, scene.local_surface(), None, _grading(scene), settings)
+    steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
+    failed = direct.status is not None or direct.index > 0
+    if not failed or scene.ramp is None or direct.status is Status.INTERRUPTED:
+        return direct, steps
+    log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
+    path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
+    stepped = path.result
+    stepped.linear_seconds += direct.linear_seconds
+    if stepped.status is None or direct.status is not None:
+        return stepped, steps + path.steps
+    return direct, steps + path.steps
+
+
+def _grading(scene: Scene) -> Grading | None:
+    return scene.grading if scene.surface.space.pole is not None else None
+
+
+def _conclude(
+    scene: Scene,
+    assembly: Assembly,
+    result: NewtonResult,
+    steps: list[LoadStep],
+    options: SolverOptions,
+    started: float,
+) -> Solution:
+    """Measure, judge and record a state."""
+    surface, multipliers = result.surface, result.multipliers
+    motion = assembly.spines.on(surface)
+    verdict, checked = None, None
+    status, message, kind = result.status, result.message, None
+    if status is None:
+        try:
+            verdict = _stability(assembly, surface, motion, multipliers)
+        except (SingularMatrix, np.linalg.LinAlgError) as error:
+            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
+    if status is None and options.audit:
+        body = assembly.density(multipliers)
+        checked = audit(scene, surface, motion, body, assembly.points)
+    hold = _hold_force(scene, assembly, surface, multipliers)
+    if status is None:
+        assert verdict is not None
+        status, message = _judge(scene, verdict, checked, hold)
+    scale = scene.units
+    total = process_time() - started
+    return Solution(
+        scene=scene,
+        status=status,
+        message=message,
+        surface=surface.moved(scale.to_world(surface.points)),
+        measures=measures(scene, assembly, surface, multipliers),
+        multipliers=_named(assembly, multipliers, scale.pressure, scale.length),
+        body=assembly.density(multipliers),
+        index=verdict.index if verdict else None,
+        lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
+        audit=checked,
+        hold_force=hold,
+        unknowns=assembly.size,
+        iterations=tuple(result.iterations),
+        load_steps=tuple(steps),
+        cpu_seconds={
+            "assembly": assembly.seconds,
+            "linear": result.linear_seconds,
+            "contact": 0.0,
+            "solve": total,
+        },
+        warnings=_warnings(scene),
+        kind=kind,
+    )
+
+
+def _stability(
+    assembly: Assembly, surface: Surface, motion: Motion, multipliers: Array
+) -> Stability:
+    system = assembly.system(surface, motion.directions, multipliers)
+    border = system.constraint_gradients
+    factor = Bordered(system.matrix, border)
+    return stability(system.matrix, assembly.mass(surface, motion.directions), border, factor)
+
+
+def _hold_force(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> tuple[float, float, float]:
+    """World vector of the force with which the centroid constraints act on the liquid."""
+    local = np.zeros(3)
+    volume = next((t.value for t in assembly.constraints if t.name == "volume"), 0.0)
+    for term, multiplier in zip(assembly.constraints, multipliers, strict=True):
+        if isinstance(term, Centroid):
+            local["xyz".index(term.axis)] = multiplier * volume
+    x, y, z = (float(f) for f in scene.units.axes @ local * scene.units.force)
+    return x, y, z
+
+
+def _judge(
+    scene: Scene, verdict: Stability, checked: Audit | None, hold: tuple[float, float, float]
+) -> tuple[Status, str]:
+    """Status of a converged state."""
+    limit = TOLERANCE
+    free = np.array(hold) @ scene.units.axes / scene.units.force
+    asked = "" if scene.hold == "none" else scene.hold
+    loose = [axis for axis in "xy" if axis not in asked]
+    slipping = float(np.linalg.norm([free["xyz".index(axis)] for axis in loose]))
+    if slipping > limit.balance * (1.0 + float(np.linalg.norm(free))):
+        force = slipping * scene.units.force
+        return Status.NO_EQUILIBRIUM, (
+            f"nothing balances a tangential force of {force:.6g}: a smooth plane holds no droplet "
+            'against it; hold the centroid (droplet.hold = "xy") or level the plane'
+        )
+    if checked is not None:
+        found = _defect(checked, scene)
+        if found is not None:
+            return found
+    if verdict.index > 0 and verdict.smallest < 0:
+        return Status.CONVERGED_SADDLE, (
+            f"equilibrium, but unstable: {verdict.index} motion(s) lower the energy (eigenvalue "
+            f"{verdict.smallest:.3g}); disturb the start to leave it"
+        )
+    if verdict.marginal or verdict.index > 0:
+        return Status.CONVERGED_MARGINAL, (
+            f"equilibrium, but the smallest eigenvalue {verdict.smallest:.1e} is below its own "
+            f"error {verdict.error:.1e}"
+        )
+    if checked is None:
+        return Status.UNVERIFIED, "converged and stable; the audit was switched off"
+    return Status.CONVERGED_STABLE, "converged, audited and stable"
+
+
+def _defect(checked: Audit, scene: Scene) -> tuple[Status, str] | None:
+    """The audit's objection, or None."""
+    limit = TOLERANCE
+    if checked.penetration > limit.penetration:
+        return Status.PENETRATION, (
+            f"the membrane lies up to {checked.penetration:.1e} lengths below the substrate"
+        )
+    angle = 90.0 if scene.substrate is None else scene.substrate.contact_angle
+    nearest = min(angle, 180.0 - angle)
+    for what, value, most in (
+        ("residual on doubled quadrature", checked.residual, limit.residual),
+        ("volume error", checked.volume, limit.volume),
+        ("vertical force balance", checked.force, limit.force),
+        ("force balance at the contact line", checked.line, limit.line),
+        ("contact angle error over the nearest angle", abs(checked.angle) / nearest, limit.angle)
+        if nearest > 0
+        else ("contact angle error", 0.0, 1.0),
+    ):
+        if not value <= most:
+            return Status.UNDERRESOLVED, (
+                f"the audit's {what} is {value:.1e} (allowed {most:.0e}): take more "
+                "discretization.elements or a higher degree"
+            )
+    return None
+
+
+def _named(
+    assembly: Assembly, multipliers: Array, pressure: float, length: float
+) -> dict[str, float]:
+    return {
+        term.name: float(m) * pressure / (length if isinstance(term, Centroid) else 1.0)
+        for term, m in zip(assembly.constraints, multipliers, strict=True)
+    }
+
+
+def _warnings(scene: Scene) -> tuple[str, ...]:
+    pinned = [t.axis for t in scene.terms if isinstance(t, Centroid)]
+    texts = list(scene.warnings)
+    if pinned:
+        texts.append(
+            f"neutral rigid translations along {', '.join(pinned)} are pinned by holding the "
+            "centroid"
+        )
+    return tuple(texts)

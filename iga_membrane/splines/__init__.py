@@ -1,0 +1,30 @@
+"""Spline and Lagrange spaces: functions of two parameters, no geometry."""
+
+from .basis import Basis, bspline_basis, lagrange_basis, line_basis, periodic_basis, ring_basis
+from .grading import Grading
+from .knots import check_knots, greville, insertion_matrix, open_knots
+from .polar import close_pole, net_of, points_of, ring_angles
+from .space import Space, tensor_space
+from .table import EdgeTable, Table
+
+__all__ = [
+    "Basis",
+    "EdgeTable",
+    "Grading",
+    "Space",
+    "Table",
+    "bspline_basis",
+    "check_knots",
+    "close_pole",
+    "greville",
+    "insertion_matrix",
+    "lagrange_basis",
+    "line_basis",
+    "net_of",
+    "open_knots",
+    "periodic_basis",
+    "points_of",
+    "ring_angles",
+    "ring_basis",
+    "tensor_space",
+]

@@ -1,0 +1,181 @@
+"""One-dimensional bases: every space is built from them, through Bezier extraction.
+
+A :class:`Basis` is a piecewise polynomial basis on a line or on a ring. B-splines (clamped or
+periodic) and Lagrange polynomials differ only in the extraction matrices and in which functions
+live on which element, so everything above sees one class.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import SceneError
+from .bernstein import bernstein, extraction
+from .knots import check_knots, greville, open_knots
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Piecewise polynomial basis.
+
+    Attributes
+    ----------
+    degree : polynomial degree ``p``.
+    breaks : (m + 1,) element boundaries.
+    operators : (m, p + 1, p + 1) Bezier extraction, functions by Bernstein polynomials.
+    functions : (m, p + 1) global number of each local function.
+    abscissae : (n,) the point of each function: Greville point or node.
+    continuity : continuous derivatives at element boundaries.
+    periodic : whether the ends of the domain are joined.
+    knots : the clamped knot vector of a B-spline basis on a line, else None.
+    """
+
+    degree: int
+    breaks: Array
+    operators: Array
+    functions: Index
+    abscissae: Array
+    continuity: int
+    periodic: bool = False
+    knots: Array | None = field(default=None, repr=False)
+
+    @property
+    def count(self) -> int:
+        """Number of basis functions."""
+        return len(self.abscissae)
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.breaks) - 1
+
+    @property
+    def sizes(self) -> Array:
+        """(m,) element lengths."""
+        return np.diff(self.breaks)
+
+    def on_elements(self, u: Array, derivative: int = 0) -> Array:
+        """Values at the same local points of every element: (m, len(u), p + 1)."""
+        polynomials = bernstein(u, self.degree, derivative)
+        table = polynomials @ self.operators.transpose(0, 2, 1)
+        return np.asarray(table / self.sizes[:, None, None] ** derivative)
+
+    def locate(self, t: ArrayLike) -> tuple[Index, Array]:
+        """Element and local coordinate in [0, 1] of each point; a ring wraps round."""
+        t = np.asarray(t, float)
+        first, last = self.breaks[0], self.breaks[-1]
+        if self.periodic:
+            t = first + np.mod(t - first, last - first)
+        element = np.clip(np.searchsorted(self.breaks, t, "right") - 1, 0, self.elements - 1)
+        return element, (t - self.breaks[element]) / self.sizes[element]
+
+    def at(self, t: ArrayLike, derivative: int = 0) -> tuple[Index, Array]:
+        """Functions alive at each point and their values: two arrays (points, p + 1)."""
+        element, u = self.locate(t)
+        polynomials = bernstein(u, self.degree, derivative)
+        values = np.einsum("tj,tij->ti", polynomials, self.operators[element])
+        return self.functions[element], values / self.sizes[element][:, None] ** derivative
+
+    def matrix(self, t: ArrayLike, derivative: int = 0) -> Array:
+        """Dense collocation matrix (points, n): ``matrix @ coefficients`` is the curve at ``t``."""
+        functions, values = self.at(t, derivative)
+        result = np.zeros((len(functions), self.count))
+        np.add.at(result, (np.arange(len(functions))[:, None], functions), values)
+        return result
+
+    def derivative_at_abscissae(self) -> Array:
+        """Dense matrix of first derivatives at the abscissae.
+
+        Where the basis has a kink (a node between two Lagrange elements), the mean of both sides.
+        """
+        if self.continuity >= 1:
+            return self.matrix(self.abscissae, 1)
+        step = 1e-9 * self.sizes.min()
+        inside = self.abscissae if self.periodic else np.clip(
+            self.abscissae, self.breaks[0] + step, self.breaks[-1] - step
+        )
+        return 0.5 * (self.matrix(inside - step, 1) + self.matrix(inside + step, 1))
+
+
+def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basis:
+    """B-splines on a clamped knot vector.
+
+    Raises
+    ------
+    SceneError
+        Degree below 2 or a knot vector that is not ``continuity`` times differentiable.
+    """
+    if degree < 1 or degree <= continuity:
+        raise SceneError(
+            f"degree {degree} is not C{continuity}: C{continuity} needed, so degree >= "
+            f"{continuity + 1} (got {degree}); curvature and contact lines need C1"
+        )
+    t = check_knots(knots, degree, continuity)
+    breaks, counts = np.unique(t, return_counts=True)
+    spans = np.searchsorted(t, breaks[1:-1], "right") - 1
+    spans = np.concatenate([[degree], spans]).astype(np.int64)
+    windows = t[spans[:, None] + np.arange(1 - degree, degree + 1)]
+    return Basis(
+        degree,
+        breaks,
+        extraction(windows, degree),
+        spans[:, None] - degree + np.arange(degree + 1),
+        greville(t, degree),
+        degree - int(counts[1:-1].max(initial=1)),
+        knots=t,
+    )
+
+
+def periodic_basis(elements: int, degree: int, length: float = 1.0) -> Basis:
+    """Uniform B-splines on a ring of ``elements`` elements; function ``i`` starts at element ``i``."""
+    if degree < 2:
+        raise SceneError(f"degree {degree} is not C1: C1 needed, so degree >= 2 (got {degree})")
+    if elements <= degree:
+        raise SceneError(f"elements = {elements}: a ring of degree {degree} needs > {degree}")
+    size = length / elements
+    window = np.arange(1 - degree, degree + 1) * size
+    operators = np.repeat(extraction(window[None], degree), elements, axis=0)
+    element = np.arange(elements)
+    functions = (element[:, None] - degree + np.arange(degree + 1)) % elements
+    abscissae = (element + 0.5 * (degree + 1)) * size % length
+    breaks = np.linspace(0.0, length, elements + 1)
+    return Basis(degree, breaks, operators, functions, abscissae, degree - 1, periodic=True)
+
+
+def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) -> Basis:
+    """Lagrange polynomials on equidistant nodes of each element: C0, degree 1 to 4."""
+    if not 1 <= degree <= 4:
+        raise SceneError(f"degree = {degree}: a lagrange space has degree 1 to 4")
+    t = np.asarray(breaks, float)
+    elements = len(t) - 1
+    nodes = np.arange(degree + 1) / degree
+    operator = np.linalg.inv(bernstein(nodes, degree)).T
+    functions = np.arange(elements)[:, None] * degree + np.arange(degree + 1)
+    abscissae = (t[:-1, None] + np.diff(t)[:, None] * nodes[:-1]).ravel()
+    if periodic:
+        functions = functions % (elements * degree)
+    else:
+        abscissae = np.append(abscissae, t[-1])
+    operators = np.repeat(operator[None], elements, axis=0)
+    return Basis(degree, t, operators, functions, abscissae, 0, periodic)
+
+
+def line_basis(kind: str, elements: int, degree: int) -> Basis:
+    """Uniform basis on [0, 1]: ``kind`` "bspline" (of full smoothness) or "lagrange"."""
+    breaks = np.linspace(0.0, 1.0, elements + 1)
+    if kind == "lagrange":
+        return lagrange_basis(breaks, degree)
+    return bspline_basis(open_knots(breaks, degree), degree)
+
+
+def ring_basis(kind: str, elements: int, degree: int, length: float) -> Basis:
+    """Uniform basis on a ring of circumference ``length``."""
+    if kind == "lagrange":
+        return lagrange_basis(np.linspace(0.0, length, elements + 1), degree, periodic=True)
+    return periodic_basis(elements, degree, length)

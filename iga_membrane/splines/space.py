@@ -1,0 +1,248 @@
+"""Tensor-product spaces of B-splines, NURBS or Lagrange polynomials, open or closed by a pole."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import SceneError
+from .basis import Basis
+from .quadrature import gauss
+from .table import EdgeTable, Table
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """Functions of two parameters ``(xi1, xi2)``.
+
+    The functions of element ``e`` are ``combine[e] @ (tensor products of the two bases)``, where
+    the products are made rational first if there are weights. ``combine`` is None except where a
+    pole joins control points (:mod:`.polar`).
+
+    Attributes
+    ----------
+    bases : the two one-dimensional bases; element ``(e1, e2)`` has number ``e1 * m2 + e2``.
+    functions : (elements, local) global number of each local function.
+    count : number of functions, that is of control points.
+    weights : (n1, n2) NURBS weights > 0, or None for polynomials.
+    combine : (elements, local, local) or None.
+    pole : continuity with which ``xi2 = end`` is closed to a point (0 or 1), or None.
+    """
+
+    bases: tuple[Basis, Basis]
+    functions: Index = field(repr=False)
+    count: int
+    weights: Array | None = field(default=None, repr=False)
+    combine: Array | None = field(default=None, repr=False)
+    pole: int | None = None
+
+    @property
+    def degree(self) -> int:
+        """Polynomial degree (the larger of the two directions)."""
+        return max(basis.degree for basis in self.bases)
+
+    @property
+    def continuity(self) -> int:
+        """Continuous derivatives across element boundaries."""
+        return min(basis.continuity for basis in self.bases)
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.functions)
+
+    @property
+    def net_shape(self) -> tuple[int, int]:
+        """Shape of the tensor-product control net (before a pole joins any of it)."""
+        return self.bases[0].count, self.bases[1].count
+
+    def table(
+        self,
+        points: int | None = None,
+        elements: Index | None = None,
+        *,
+        second: bool = False,
+    ) -> Table:
+        """Functions at Gauss points.
+
+        Parameters
+        ----------
+        points : Gauss points per direction; ``degree + 1`` if omitted.
+        elements : which elements, all if omitted.
+        second : whether to tabulate second derivatives too.
+        """
+        u, w = gauss(points or self.degree + 1)
+        local = np.stack(np.meshgrid(u, u, indexing="ij"), axis=-1).reshape(-1, 2)
+        chosen = np.arange(self.elements) if elements is None else elements
+        e1, e2 = np.divmod(chosen, self.bases[1].elements)
+        orders = 2 if second else 1
+        one = [self.bases[0].on_elements(u, k)[e1] for k in range(orders + 1)]
+        two = [self.bases[1].on_elements(u, k)[e2] for k in range(orders + 1)]
+        rows: dict[tuple[int, int], Array] = {}
+        for i, j in _ORDERS[: 6 if second else 3]:
+            product = one[i][:, :, None, :, None] * two[j][:, None, :, None, :]
+            rows[i, j] = product.reshape(len(chosen), len(local), -1)
+        rows = self._finish(rows, chosen)
+        h1, h2 = self.bases[0].sizes[e1], self.bases[1].sizes[e2]
+        start = np.stack([self.bases[0].breaks[e1], self.bases[1].breaks[e2]], axis=-1)
+        size = np.stack([h1, h2], axis=-1)
+        return Table(
+            self.functions[chosen],
+            rows[0, 0],
+            rows[1, 0],
+            rows[0, 1],
+            np.multiply.outer(h1 * h2, np.outer(w, w).ravel()),
+            start[:, None] + size[:, None] * local,
+            np.stack([rows[2, 0], rows[1, 1], rows[0, 2]]) if second else None,
+        )
+
+    def at(self, xi: ArrayLike, orders: int = 2) -> tuple[Index, dict[tuple[int, int], Array]]:
+        """Functions at any points.
+
+        Parameters
+        ----------
+        xi : (points, 2) parameters.
+        orders : highest derivative, 0 to 2.
+
+        Returns
+        -------
+        functions : (points, local).
+        rows : derivative ``(i, j)`` to an array (points, local).
+        """
+        xi = np.atleast_2d(np.asarray(xi, float))
+        e1, _ = self.bases[0].locate(xi[:, 0])
+        e2, _ = self.bases[1].locate(xi[:, 1])
+        chosen = e1 * self.bases[1].elements + e2
+        one = [self.bases[0].at(xi[:, 0], k)[1] for k in range(orders + 1)]
+        two = [self.bases[1].at(xi[:, 1], k)[1] for k in range(orders + 1)]
+        rows = {
+            (i, j): (one[i][:, :, None] * two[j][:, None, :]).reshape(len(xi), 1, -1)
+            for i, j in _ORDERS
+            if i + j <= orders
+        }
+        rows = self._finish(rows, chosen)
+        return self.functions[chosen], {key: row[:, 0] for key, row in rows.items()}
+
+    def edge_table(
+        self, edge: str, points: int | None = None, elements: Index | None = None
+    ) -> EdgeTable:
+        """Functions along an edge at Gauss points.
+
+        Parameters
+        ----------
+        edge : "xi2=0" (along xi1), "xi2=1", "xi1=0" or "xi1=1" (along xi2).
+        elements : which elements of the edge's own direction, all if omitted.
+        """
+        along, end = EDGES[edge]
+        u, w = gauss(points or self.degree + 1)
+        basis, other = self.bases[along], self.bases[1 - along]
+        chosen = np.arange(basis.elements) if elements is None else elements
+        t = basis.breaks[chosen][:, None] + basis.sizes[chosen][:, None] * u
+        xi = np.empty((t.size, 2))
+        xi[:, along] = t.ravel()
+        xi[:, 1 - along] = other.breaks[-end]
+        functions, rows = self.at(xi, 1)
+        shape = (*t.shape, -1)
+        key = (1, 0) if along == 0 else (0, 1)
+        return EdgeTable(
+            functions.reshape(shape)[:, 0],
+            rows[0, 0].reshape(shape),
+            rows[key].reshape(shape),
+            basis.sizes[chosen][:, None] * w,
+        )
+
+    def edge_functions(self, edge: str) -> Index:
+        """Numbers of the functions that do not vanish on an edge."""
+        table = self.edge_table(edge)
+        alive = np.abs(table.values).max(axis=1) > 1e-14
+        return np.unique(table.functions[alive])
+
+    @cached_property
+    def abscissae(self) -> Array:
+        """(n1, n2, 2) the parameter point of each control point of the net."""
+        grids = np.meshgrid(self.bases[0].abscissae, self.bases[1].abscissae, indexing="ij")
+        return np.stack(grids, axis=-1)
+
+    def _finish(self, rows: dict[tuple[int, int], Array], elements: Index) -> dict:
+        """Make tensor products rational, then combine them at a pole. Rows (e, q, local)."""
+        if self.weights is not None:
+            tensor = _tensor_functions(self.bases)[elements]
+            rows = _rational(rows, self.weights.ravel()[tensor][:, None])
+        if self.combine is not None:
+            near = np.flatnonzero(self._combined[elements])
+            operator = self.combine[elements[near]].transpose(0, 2, 1)
+            for row in rows.values():
+                row[near] = row[near] @ operator
+        return rows
+
+    @cached_property
+    def _combined(self) -> NDArray[np.bool_]:
+        """(elements,) which elements ``combine`` changes."""
+        assert self.combine is not None
+        return (self.combine != np.eye(self.combine.shape[1])).any(axis=(1, 2))
+
+
+EDGES = {"xi2=0": (0, 0), "xi2=1": (0, 1), "xi1=0": (1, 0), "xi1=1": (1, 1)}
+_ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
+
+
+def tensor_space(one: Basis, two: Basis, weights: ArrayLike | None = None) -> Space:
+    """Tensor product of two bases, rational if weights are given.
+
+    Raises
+    ------
+    SceneError
+        A weight that is not a finite number > 0, or weights of the wrong shape.
+    """
+    checked = None
+    if weights is not None:
+        checked = np.array(weights, float)
+        if checked.shape != (one.count, two.count):
+            raise SceneError(
+                f"weights: shape {checked.shape} given, {(one.count, two.count)} expected"
+            )
+        bad = np.argwhere(~(np.isfinite(checked) & (checked > 0)))
+        if len(bad):
+            index = tuple(int(k) for k in bad[0])
+            raise SceneError(f"weights{list(index)} = {checked[index]}: a weight must be > 0")
+        if np.ptp(checked) == 0:
+            checked = None
+    return Space((one, two), _tensor_functions((one, two)), one.count * two.count, checked)
+
+
+
+
+def _tensor_functions(bases: tuple[Basis, Basis]) -> Index:
+    one, two = bases
+    grid = one.functions[:, None, :, None] * two.count + two.functions[None, :, None, :]
+    return grid.reshape(one.elements * two.elements, -1)
+
+
+def _rational(rows: dict[tuple[int, int], Array], w: Array) -> dict[tuple[int, int], Array]:
+    """NURBS from B-splines by the quotient rule: R = w N / W, W = sum w N."""
+    num = {key: row * w for key, row in rows.items()}
+    total = {key: row.sum(axis=-1, keepdims=True) for key, row in num.items()}
+    out: dict[tuple[int, int], Array] = {}
+    for key in rows:
+        i, j = key
+        value = num[key]
+        if (i, j) in ((1, 0), (0, 1)):
+            value = value - total[key] * out[0, 0]
+        elif (i, j) in ((2, 0), (0, 2)):
+            first = (i // 2, j // 2)
+            value = value - 2 * total[first] * out[first] - total[key] * out[0, 0]
+        elif (i, j) == (1, 1):
+            value = (
+                value
+                - total[1, 0] * out[0, 1]
+                - total[0, 1] * out[1, 0]
+                - total[1, 1] * out[0, 0]
+            )
+        out[key] = value / total[0, 0]
+    return out

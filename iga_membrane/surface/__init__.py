@@ -1,0 +1,1 @@
+"""Surfaces: position, its exact derivatives, and how control points may move."""

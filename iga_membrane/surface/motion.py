@@ -1,0 +1,215 @@
+"""Which control point moves along which direction with which unknown.
+
+A liquid membrane resists only normal motion, so one scalar unknown per control point is enough
+("spines"): ``x_i = X_i + s_i d_i``, directions re-based on the current surface before every
+Newton step. Poles, mirror images, joints, fixed rims and sliding edges are all entries of the
+same table: points that share an unknown, points without one, directions in a plane.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import GeometryError, SceneError
+from ..splines import Space, net_of, ring_angles
+from ..splines.space import EDGES
+from .supports import Fixed, Joint, Sector, Sliding, Support, Symmetry
+from .surface import Surface
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Linear map from unknowns to displacements of control points.
+
+    Attributes
+    ----------
+    directions : (count, 3) displacement of each control point per unit of its unknown.
+    unknowns : (count,) number of its unknown, -1 where it is fixed.
+    size : number of unknowns.
+    """
+
+    directions: Array
+    unknowns: Index
+    size: int
+
+    def displacement(self, step: Array) -> Array:
+        """(count, 3) displacements for unknowns (size,)."""
+        padded = np.append(step, 0.0)
+        return np.asarray(padded[self.unknowns][:, None] * self.directions)
+
+
+class Spines:
+    """The spine motion of a surface: a fixed numbering of unknowns, directions on demand.
+
+    Parameters
+    ----------
+    surface : its points tell which edges lie in symmetry planes.
+    supports : what restricts the motion.
+    """
+
+    def __init__(self, surface: Surface, supports: tuple[Support, ...] = ()) -> None:
+        space = surface.space
+        self.space = space
+        self._sliding = [s.edge for s in supports if isinstance(s, Sliding)]
+        self._mirrors: list[tuple[Index, int]] = []
+        owner = np.arange(space.count)
+        for support in supports:
+            if isinstance(support, Sector) and support.model != "full":
+                owner = _images(space, support)[owner]
+            elif isinstance(support, Joint):
+                first, second = (space.edge_functions(edge) for edge in support.edges)
+                owner[second] = owner[first]
+            elif isinstance(support, Symmetry):
+                axis = "xyz".index(support.axis)
+                on_plane = np.abs(surface.points[:, axis]) <= 1e-12 * surface.size
+                self._mirrors.append((np.flatnonzero(on_plane), axis))
+        fixed = np.zeros(space.count, bool)
+        for support in supports:
+            if isinstance(support, Fixed):
+                fixed[space.edge_functions(support.edge)] = True
+        leaders = np.unique(owner[~fixed[owner]])
+        number = np.full(space.count, -1)
+        number[leaders] = np.arange(len(leaders))
+        self.unknowns: Index = number[owner]
+        self.size = len(leaders)
+        self._seams = [
+            tuple(space.edge_functions(edge) for edge in support.edges)
+            for support in supports
+            if isinstance(support, Joint)
+        ]
+
+    def on(self, surface: Surface) -> Motion:
+        """Directions re-based on a surface: its normals, blended into a sliding edge's plane.
+
+        The blend ``d = (1 - w) m + w n`` with ``w`` the parametric distance from the edge is one
+        smooth field over the patch; a jump in it would cost orders of magnitude.
+        """
+        space = surface.space
+        normals = self._normals(surface)
+        for edge in self._sliding:
+            along, end = EDGES[edge]
+            basis = space.bases[1 - along]
+            parameter = (basis.abscissae - basis.breaks[0]) / (basis.breaks[-1] - basis.breaks[0])
+            w = np.abs(parameter - end)
+            rim = _conormals(surface, edge)
+            if along == 0:
+                normals = (1 - w)[None, :, None] * rim[:, None] + w[None, :, None] * normals
+            else:
+                normals = (1 - w)[:, None, None] * rim[None] + w[:, None, None] * normals
+        directions = _points_of_field(space, normals)
+        for first, second in self._seams:
+            mean = directions[first] + directions[second]
+            mean /= np.linalg.norm(mean, axis=1, keepdims=True)
+            directions[first] = directions[second] = mean
+        for points, axis in self._mirrors:
+            directions[points, axis] = 0.0
+            length = np.linalg.norm(directions[points], axis=1, keepdims=True)
+            directions[points] /= np.where(length > 0, length, 1.0)
+        return Motion(directions, self.unknowns, self.size)
+
+    @cached_property
+    def _derivative_matrices(self) -> tuple[Array, Array, Array, Array]:
+        one, two = self.space.bases
+        return (
+            one.matrix(one.abscissae),
+            one.derivative_at_abscissae(),
+            two.matrix(two.abscissae),
+            two.derivative_at_abscissae(),
+        )
+
+    def _normals(self, surface: Surface) -> Array:
+        """(n1, n2, 3) unit normals at the abscissae of the net."""
+        v1, d1, v2, d2 = self._derivative_matrices
+        net, weights = net_of(surface.space, surface.points), surface.space.weights
+        if weights is None:
+            a1 = np.einsum("ab,bjc->ajc", d1, np.einsum("jk,bkc->bjc", v2, net))
+            a2 = np.einsum("ab,bjc->ajc", v1, np.einsum("jk,bkc->bjc", d2, net))
+        else:
+            k = surface.at(surface.space.abscissae, 1)
+            a1, a2 = k.tangents[..., 0, :], k.tangents[..., 1, :]
+        c = np.cross(a1, a2)
+        if surface.space.pole is not None:
+            # at the pole a1 = 0: the normal is that of the ring next to it
+            ring = net[:, -2] - net[:, -1]
+            c[:, -1] = np.cross(ring, np.roll(ring, -1, axis=0)).sum(axis=0)
+        length = np.linalg.norm(c, axis=-1, keepdims=True)
+        if not (length > 0).all():
+            i, j = np.argwhere(length[..., 0] <= 0)[0]
+            raise GeometryError(
+                f"the surface has no normal at control point ({i}, {j}): its tangents are "
+                "parallel or zero; start from a regular parametrization"
+            )
+        return np.asarray(c / length)
+
+
+def _conormals(surface: Surface, edge: str) -> Array:
+    """(n, 3) unit vectors in z = 0 that point out of the surface at an edge's abscissae."""
+    along, end = EDGES[edge]
+    net = surface.net
+    row = net[:, -end] if along == 0 else net[-end]
+    basis = surface.space.bases[along]
+    tangent = basis.derivative_at_abscissae() @ row
+    outward = np.stack([tangent[:, 1], -tangent[:, 0], np.zeros(len(row))], axis=1)
+    if (along == 0) == (end == 1):
+        outward = -outward
+    return np.asarray(outward / np.linalg.norm(outward, axis=1, keepdims=True))
+
+
+def _points_of_field(space: Space, net: Array) -> Array:
+    """Control points' values of a field given on the net; at a pole its value there."""
+    if space.pole is None:
+        return net.reshape(-1, 3)
+    joined = 2 if space.pole else 1
+    corners = np.repeat(net[:1, -1], 3 if space.pole else 1, axis=0)
+    return np.concatenate([net[:, : net.shape[1] - joined].reshape(-1, 3), corners])
+
+
+def _images(space: Space, sector: Sector) -> Index:
+    """(count,) the control point of which each is a mirror image (or itself)."""
+    ring, _ = space.bases
+    if not ring.periodic or ring.elements % sector.copies:
+        raise SceneError(
+            f'model = "{sector.model}" needs a closed ring of elements that {sector.copies} '
+            f"divides (got {ring.elements})"
+        )
+    n1 = ring.count
+    per_element = n1 // ring.elements
+    # Mirroring xi -> turn - xi carries the function at abscissa index i to (shift - i): found
+    # from the sum of abscissae, which is a whole number of index steps.
+    first = ring.abscissae[0] / (ring.breaks[-1] / n1)
+    indices = np.arange(n1)
+    owner = indices.copy()
+    for fold in {"half": [0.0], "quarter": [0.0, 0.5], "eighth": [0.0, 0.5, 0.25]}[sector.model]:
+        shift = round(fold * n1 - 2 * first)
+        image = (shift - indices) % n1
+        for _ in range(sector.copies):
+            owner = np.minimum(owner, owner[image])
+            owner = owner[owner]
+    assert per_element * ring.elements == n1
+    result = np.arange(space.count)
+    joined = {None: 0, 0: 1, 1: 2}[space.pole]
+    rings = space.net_shape[1] - joined
+    result[: n1 * rings] = (owner[:, None] * rings + np.arange(rings)).ravel()
+    if space.pole == 1:
+        corner = n1 * rings
+        if sector.model == "half":
+            result[corner + 2] = corner + 1
+        else:
+            result[corner + 1 :] = corner
+    return result
+
+
+def sector_elements(space: Space, sector: Sector) -> Index:
+    """Numbers of the elements in one sector."""
+    ring, meridian = space.bases
+    return np.arange(ring.elements // sector.copies * meridian.elements)
+
+
+__all__ = ["Motion", "Spines", "ring_angles", "sector_elements"]

@@ -1,0 +1,77 @@
+"""How the edges and planes of a surface restrict its motion: plain data, read by the motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """An edge whose control points do not move: a rim.
+
+    Attributes
+    ----------
+    edge : "xi1=0", "xi1=1", "xi2=0" or "xi2=1".
+    """
+
+    edge: str
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """An edge that slides on the plane z = 0: a contact line.
+
+    Attributes
+    ----------
+    edge : as for :class:`Fixed`.
+    """
+
+    edge: str = "xi2=0"
+
+
+@dataclass(frozen=True)
+class Symmetry:
+    """A mirror plane through the origin, normal to an axis; edges that lie in it stay in it.
+
+    Attributes
+    ----------
+    axis : "x", "y" or "z".
+    """
+
+    axis: Literal["x", "y", "z"]
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Two edges of equal control points that move together: the seam between patches.
+
+    Attributes
+    ----------
+    edges : the two edges.
+    """
+
+    edges: tuple[str, str] = ("xi1=0", "xi1=1")
+
+
+@dataclass(frozen=True)
+class Sector:
+    """The part of a closed ring patch that is computed; the rest are mirror images of it.
+
+    "half": mirror plane y = 0; "quarter": x = 0 too; "eighth": x = y too. Every control point of
+    the whole ring is kept, so all models share one spline space and give the same numbers.
+
+    Attributes
+    ----------
+    model : "full", "half", "quarter" or "eighth".
+    """
+
+    model: Literal["full", "half", "quarter", "eighth"] = "full"
+
+    @property
+    def copies(self) -> int:
+        """How many sectors make the whole."""
+        return {"full": 1, "half": 2, "quarter": 4, "eighth": 8}[self.model]
+
+
+Support = Fixed | Sliding | Symmetry | Joint | Sector

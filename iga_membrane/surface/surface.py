@@ -1,0 +1,100 @@
+"""A surface is a space and its control points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import GeometryError
+from ..splines import Space, Table, net_of
+from .kinematics import Kinematics
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Parametric surface ``x(xi) = sum_i N_i(xi) X_i``.
+
+    Attributes
+    ----------
+    space : the functions ``N_i``.
+    points : (count, 3) control points ``X_i``.
+    """
+
+    space: Space
+    points: Array = field(repr=False)
+
+    def __post_init__(self) -> None:
+        points = np.asarray(self.points)
+        if points.dtype == object or not np.issubdtype(points.dtype, np.floating):
+            raise GeometryError(f"control points: dtype {points.dtype} given, float64 expected")
+        if points.shape != (self.space.count, 3):
+            raise GeometryError(
+                f"control points: shape {points.shape} given, {(self.space.count, 3)} expected"
+            )
+        bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+        if bad.size:
+            raise GeometryError(f"control point {bad[0]} = {points[bad[0]]} is not finite")
+        object.__setattr__(self, "points", points.astype(float))
+
+    def on(self, table: Table) -> Kinematics:
+        """Geometry at tabulated quadrature points, arrays (elements, points, ...)."""
+        position, a1, a2 = table.derivatives(self.points)
+        second = None
+        if table.second is not None:
+            x11, x12, x22 = table.second @ self.points[table.functions]
+            second = np.stack([np.stack([x11, x12], -2), np.stack([x12, x22], -2)], -3)
+        return Kinematics(position, np.stack([a1, a2], axis=-2), second)
+
+    def at(self, xi: ArrayLike, orders: int = 2) -> Kinematics:
+        """Geometry at any parameters (..., 2), exactly from the spline derivatives."""
+        xi = np.asarray(xi, float)
+        functions, rows = self.space.at(xi.reshape(-1, 2), orders)
+        local = self.points[functions]
+        shape = xi.shape[:-1]
+        x = {
+            key: np.einsum("ta,tai->ti", row, local).reshape(*shape, 3)
+            for key, row in rows.items()
+        }
+        second = None
+        if orders == 2:
+            second = np.stack(
+                [np.stack([x[2, 0], x[1, 1]], -2), np.stack([x[1, 1], x[0, 2]], -2)], -3
+            )
+        return Kinematics(x[0, 0], np.stack([x[1, 0], x[0, 1]], axis=-2), second)
+
+    def grid(self, n1: int, n2: int, orders: int = 2) -> Kinematics:
+        """Geometry on a regular grid of parameters, arrays (n1, n2, ...)."""
+        one, two = self.space.bases
+        s = np.linspace(one.breaks[0], one.breaks[-1], n1)
+        t = np.linspace(two.breaks[0], two.breaks[-1], n2)
+        return self.at(np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1), orders)
+
+    def area(self, points: int | None = None) -> float:
+        """Area, by Gauss quadrature with ``points`` per direction and element."""
+        table = self.space.table(points)
+        return float((self.on(table).area_element * table.weights).sum())
+
+    def moved(self, points: Array) -> Surface:
+        """The same space with other control points."""
+        return replace(self, points=points)
+
+    def transformed(
+        self, *, scale: float = 1.0, rotation: Array | None = None, shift: ArrayLike = 0.0
+    ) -> Surface:
+        """Image under ``x -> scale * rotation x + shift`` (splines are affine invariant)."""
+        turned = self.points if rotation is None else self.points @ np.asarray(rotation).T
+        return self.moved(scale * turned + np.asarray(shift, float))
+
+    @property
+    def net(self) -> Array:
+        """(n1, n2, 3) control net, with the rings that a pole joins."""
+        return net_of(self.space, self.points)
+
+    @property
+    def size(self) -> float:
+        """Length of the diagonal of the control points' bounding box."""
+        return float(np.linalg.norm(np.ptp(self.points, axis=0)))

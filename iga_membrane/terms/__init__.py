@@ -1,0 +1,23 @@
+"""Terms: what the membrane pays for, with exact first and second variations."""
+
+from .contact_line import PlaneContactLine
+from .gravity import Gravity
+from .tension import SurfaceTension
+from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term
+from .volume import Centroid, Pressure, Volume
+
+__all__ = [
+    "AreaTerm",
+    "BodyDensity",
+    "BodyTerm",
+    "Centroid",
+    "Constraint",
+    "Gravity",
+    "LineTerm",
+    "PlaneContactLine",
+    "Pressure",
+    "Scale",
+    "SurfaceTension",
+    "Term",
+    "Volume",
+]

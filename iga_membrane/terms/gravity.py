@@ -1,0 +1,34 @@
+"""Weight of the liquid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .term import BodyDensity, BodyTerm, Scale
+
+
+@dataclass(frozen=True)
+class Gravity(BodyTerm):
+    """Potential energy ``-rho g . x`` per volume, zero at the origin: the hydrostatic pressure of
+    paper eq. (21).
+
+    Attributes
+    ----------
+    density_of_liquid : rho.
+    acceleration : (3,) vector g, of any direction.
+    """
+
+    density_of_liquid: float
+    acceleration: tuple[float, float, float]
+    name = "gravity"
+
+    def density(self) -> BodyDensity:
+        x, y, z = (-self.density_of_liquid * g for g in self.acceleration)
+        return BodyDensity(0.0, (x, y, z))
+
+    def scaled(self, scale: Scale) -> Gravity:
+        weight = self.density_of_liquid * np.array(self.acceleration) @ scale.axes
+        x, y, z = (float(w) for w in weight * scale.length**2 / scale.tension)
+        return Gravity(1.0, (x, y, z))

@@ -1,0 +1,128 @@
+"""What a membrane pays for: three forms of energy, each varied once for all terms of its form.
+
+- area: ``int f dA`` over the membrane (surface tension),
+- body: ``int e(x) dV`` over the liquid, ``e`` affine in position (gravity, pressure, and the
+  functionals that constraints prescribe),
+- line: an integral along an edge of the membrane (contact line).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ..splines import EdgeTable
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Units in which a scene is solved: a length, a tension, and a frame.
+
+    Local coordinates are ``rotation.T @ (x - origin) / length``.
+    """
+
+    length: float = 1.0
+    tension: float = 1.0
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotation: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+    @property
+    def force(self) -> float:
+        return self.tension * self.length
+
+    @property
+    def energy(self) -> float:
+        return self.tension * self.length**2
+
+    @property
+    def pressure(self) -> float:
+        return self.tension / self.length
+
+    @property
+    def axes(self) -> Array:
+        """(3, 3) columns are the local axes in world coordinates."""
+        return np.array(self.rotation)
+
+    def to_world(self, points: Array) -> Array:
+        """World coordinates of local, dimensionless points (..., 3)."""
+        return np.asarray(np.array(self.origin) + self.length * (points @ self.axes.T))
+
+    def to_local(self, points: Array) -> Array:
+        """Local, dimensionless coordinates of world points (..., 3)."""
+        return np.asarray((points - np.array(self.origin)) @ self.axes / self.length)
+
+
+@dataclass(frozen=True)
+class BodyDensity:
+    """Energy per volume of liquid, ``constant + gradient . x``."""
+
+    constant: float = 0.0
+    gradient: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __add__(self, other: BodyDensity) -> BodyDensity:
+        x, y, z = (a + b for a, b in zip(self.gradient, other.gradient, strict=True))
+        return BodyDensity(self.constant + other.constant, (x, y, z))
+
+    def __mul__(self, factor: float) -> BodyDensity:
+        x, y, z = (factor * a for a in self.gradient)
+        return BodyDensity(factor * self.constant, (x, y, z))
+
+
+class Term(ABC):
+    """Something the membrane pays for. The name is its key in a solution's energies."""
+
+    name: str
+
+    @abstractmethod
+    def scaled(self, scale: Scale) -> Term:
+        """The same term in the units of a scale."""
+
+
+class AreaTerm(Term):
+    """Energy per area of the membrane."""
+
+    @abstractmethod
+    def tension(self) -> float:
+        """Energy per area."""
+
+
+class BodyTerm(Term):
+    """Energy per volume of liquid."""
+
+    @abstractmethod
+    def density(self) -> BodyDensity:
+        """Energy per volume."""
+
+
+class Constraint(BodyTerm):
+    """A body integral that is held at a value by a multiplier.
+
+    ``density`` is the integrand; the membrane's energy gets ``-multiplier * density``.
+    """
+
+    value: float
+
+
+class LineTerm(Term):
+    """Energy of an edge, quadratic or not in its control points."""
+
+    edge: str
+
+    @abstractmethod
+    def energy(self, table: EdgeTable, points: Array) -> float:
+        """Energy of the edge's elements for control points (count, 3)."""
+
+    @abstractmethod
+    def forces(self, table: EdgeTable, points: Array) -> Array:
+        """(elements, local, 3) derivative by each local control point."""
+
+    @abstractmethod
+    def hessian(self, table: EdgeTable, points: Array) -> Array:
+        """(elements, local, 3, local, 3) second derivative."""

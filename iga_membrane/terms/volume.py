@@ -1,0 +1,75 @@
+"""Pressure, prescribed or as the multiplier of a volume; and the hold of a centroid.
+
+The liquid's volume is the flux of ``z e_z`` through the membrane: the part of the liquid's surface
+that is not the membrane lies in z = 0 or is vertical, and adds nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..checks import number
+from .term import BodyDensity, BodyTerm, Constraint, Scale
+
+
+@dataclass(frozen=True)
+class Pressure(BodyTerm):
+    """Prescribed pressure (liquid minus gas) at the origin's height: energy ``-p V``."""
+
+    pressure: float
+    name = "pressure"
+
+    def density(self) -> BodyDensity:
+        return BodyDensity(-self.pressure)
+
+    def scaled(self, scale: Scale) -> Pressure:
+        return Pressure(self.pressure / scale.pressure)
+
+
+@dataclass(frozen=True)
+class Volume(Constraint):
+    """Prescribed volume of liquid; its multiplier is the pressure ``lambda`` of paper eq. (22).
+
+    Attributes
+    ----------
+    value : volume, > 0.
+    """
+
+    value: float
+    name = "volume"
+
+    def __post_init__(self) -> None:
+        number("liquid.volume", self.value, above=0.0)
+
+    def density(self) -> BodyDensity:
+        return BodyDensity(1.0)
+
+    def scaled(self, scale: Scale) -> Volume:
+        return Volume(self.value / scale.length**3)
+
+
+@dataclass(frozen=True)
+class Centroid(Constraint):
+    """Holds the liquid's centroid at 0 along an axis by a uniform body force per volume, the
+    multiplier.
+
+    Where nothing pushes the liquid along the axis, the multiplier is zero and the constraint only
+    removes a neutral rigid motion.
+
+    Attributes
+    ----------
+    axis : "x" or "y" in local coordinates.
+    """
+
+    axis: str
+    value: float = 0.0
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        return f"centroid_{self.axis}"
+
+    def density(self) -> BodyDensity:
+        return BodyDensity(0.0, (float(self.axis == "x"), float(self.axis == "y"), 0.0))
+
+    def scaled(self, scale: Scale) -> Centroid:
+        return self
