@@ -30,6 +30,11 @@ def drop_on_plane(
     Returns
     -------
     Measures by the names of the result file.
+
+    Raises
+    ------
+    ValueError
+        A puddle so wide that its apex pressure is not a double any more.
     """
     if bond == 0.0:
         return cap_on_plane(contact_angle, volume)
@@ -44,6 +49,11 @@ def drop_on_plane(
     while missing(low) < 0.0:
         high, step = low, 1.5 * step
         low -= step
+        if low < -600.0:
+            raise ValueError(
+                f"bond = {bond:g} at {contact_angle:g} degrees: the puddle is wider than 600 "
+                "capillary lengths and its apex pressure underflows; use the puddle's limits"
+            )
     root = brentq(missing, low, high, xtol=1e-14, rtol=8.9e-16)
     pressure = float(np.exp(root))
     rim, height, inside, area, moment, equator = _profile(pressure, bond, contact_angle)

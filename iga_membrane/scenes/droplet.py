@@ -133,9 +133,9 @@ def _sector(mesh: Discretization, bond: Array) -> Sector:
 def _grading(contact_angle: float, bond: float, length: float) -> Grading:
     """Shorter steps near the rim: for the capillary length, and for a foot nearly tangent to the
     plane. The constants balance the errors of height and rim (docs/results)."""
-    first = 1.0
-    if bond > 0:
-        first = min(first, 3.5 / (np.sqrt(bond) * length))
+    if bond == 0:
+        return Grading()  # a circular arc has no layer
+    first = min(1.0, 3.5 / (np.sqrt(bond) * length))
     if contact_angle > 90:
         first = min(first, max(np.sin(np.radians(contact_angle)) ** 0.5, 0.02))
     return Grading(float(first))

@@ -73,8 +73,8 @@ class Assembly:
     Parameters
     ----------
     scene : its surface's space and supports fix the numbering; its start is not used.
-    points : Gauss points per direction; if omitted ``degree`` for splines, which keeps their rates
-        (docs/results), and ``degree + 1`` for C0 spaces.
+    points : Gauss points per direction; if omitted ``degree + 1``, but ``degree`` round a smooth
+        ring, where the functions are splines on equal knots (docs/results).
     """
 
     def __init__(self, scene: Scene, points: int | None = None) -> None:
@@ -83,9 +83,16 @@ class Assembly:
         self.copies = sector.copies
         self.spines = Spines(surface, tuple(scene.supports))
         self.size = self.spines.size
-        self.points = points or space.degree + (space.continuity < 1)
+        ring = space.bases[0]
+        around = max(3, ring.degree) if ring.periodic and ring.continuity else ring.degree + 1
+        self.points = (points, points) if points else (around, space.bases[1].degree + 1)
         self.table = space.table(self.points, sector_elements(space, sector))
         self.seconds = 0.0
+        before = process_time()
+        self._kernels = vary.compiled_kernels(len(self.table.functions))
+        if self._kernels is not None:
+            self._kernels.warm_up()
+        self.compile_seconds = process_time() - before
         self._ring_elements = np.arange(space.bases[0].elements // sector.copies)
         self._space = space
         self._unknowns = self.spines.unknowns[self.table.functions]
@@ -103,7 +110,7 @@ class Assembly:
         self._held = [t.density() for t in self.constraints]
         self._targets = np.array([t.value for t in self.constraints]) / self.copies
         self.lines = [
-            (t, self._space.edge_table(t.edge, self.points, self._ring_elements))
+            (t, self._space.edge_table(t.edge, self.points[0], self._ring_elements))
             for t in terms
             if isinstance(t, LineTerm)
         ]
@@ -139,7 +146,9 @@ class Assembly:
         normal = np.einsum("eai,eai->ea", forces, along)
         gradient, scale = self._gather(normal), self._gather(np.abs(normal))
         matrix = self._matrix(
-            vary.hessian(table, at, self._tension, self.density(multipliers), along)
+            vary.hessian(
+                table, at, self._tension, self.density(multipliers), along, self._kernels
+            )
         )
         columns = [
             self._gather(np.einsum("eai,eai->ea", vary.forces(table, at, 0.0, body), along))

@@ -35,7 +35,7 @@ class Audit:
         force, with the line's force from Young's angle.
     line : the same with the line's force from the spline's own tangents: converges slower, so it
         tells how well the line is resolved.
-    angle : mean of measured minus prescribed contact angle, degrees.
+    angle : mean cosine of the measured contact angle minus that of Young's.
     penetration : depth below the plane over the scene's length, on a sampling four times denser
         than the quadrature.
     """
@@ -48,7 +48,9 @@ class Audit:
     penetration: float = 0.0
 
 
-def audit(scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, points: int) -> Audit:
+def audit(
+    scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, points: tuple[int, int]
+) -> Audit:
     """Check a state.
 
     Parameters
@@ -56,10 +58,10 @@ def audit(scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, poi
     surface : in the scene's scale.
     motion : the directions in which the residual is tested.
     body : body density of the Lagrangian, so minus the pressure.
-    points : the solver's Gauss points per direction.
+    points : the solver's Gauss points in each direction.
     """
     space, sector = surface.space, scene.sector
-    table = space.table(2 * points, sector_elements(space, sector))
+    table = space.table((2 * points[0], 2 * points[1]), sector_elements(space, sector))
     k = surface.on(table)
     terms = scene.local_terms()
     tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
@@ -77,7 +79,7 @@ def audit(scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, poi
     lines = [t for t in terms if isinstance(t, PlaneContactLine)]
     ring = np.arange(space.bases[0].elements // sector.copies)
     for term in lines:
-        edge = space.edge_table(term.edge, 2 * points, ring)
+        edge = space.edge_table(term.edge, 2 * points[0], ring)
         tangent = edge.d @ surface.points[edge.functions]
         outward = np.stack([tangent[..., 1], -tangent[..., 0], 0 * tangent[..., 0]], axis=-1)
         pull = edge.values.transpose(0, 2, 1) @ (
@@ -92,15 +94,15 @@ def audit(scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, poi
     missing = abs(inside / target - 1.0) if target else 0.0
     if not lines:
         return Audit(residual, missing)
-    line = contact_line(surface, lines[0].edge, 2 * points)
+    line = contact_line(surface, lines[0].edge, 2 * points[0])
     theta = np.radians(lines[0].contact_angle)
     force_defect, line_defect = _balance(line, body, tension, theta, inside)
-    mean = float(line.angle @ line.arc / line.arc.sum())
+    cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum())
     depth = 0.0
     if any(isinstance(s, Sliding) for s in scene.supports):
         depth = max(0.0, -_lowest(surface, points, sector))
     return Audit(
-        residual, missing, force_defect, line_defect, float(np.degrees(mean - theta)), depth
+        residual, missing, force_defect, line_defect, cosine - float(np.cos(theta)), depth
     )
 
 
@@ -135,11 +137,11 @@ def _balance(
     return abs(push - young - weight) / scale, abs(push - measured - weight) / scale
 
 
-def _lowest(surface: Surface, points: int, sector: Sector) -> float:
+def _lowest(surface: Surface, points: tuple[int, int], sector: Sector) -> float:
     """Smallest z on a sampling four times denser than the quadrature."""
     one, two = surface.space.bases
-    n1 = 4 * points * one.elements // sector.copies
+    n1 = 4 * points[0] * one.elements // sector.copies
     s = np.linspace(one.breaks[0], one.breaks[-1], n1 * sector.copies + 1)[: n1 + 1]
-    t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points * two.elements + 1)
+    t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points[1] * two.elements + 1)
     heights = one.matrix(s) @ surface.net[..., 2]
     return float((heights @ rational_matrix(surface.space, t).T).min())

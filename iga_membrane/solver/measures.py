@@ -77,7 +77,7 @@ def measures(
     values["volume"] = volume(assembly, surface) * scale.length**3
     if scene.kind == "sessile_droplet":
         values |= _droplet(surface, values["A_wet"], body, scale)
-    return values
+    return {name: float(value) for name, value in values.items()}
 
 
 def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, float]:

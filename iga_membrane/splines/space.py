@@ -64,7 +64,7 @@ class Space:
 
     def table(
         self,
-        points: int | None = None,
+        points: int | tuple[int, int] | None = None,
         elements: Index | None = None,
         *,
         second: bool = False,
@@ -73,17 +73,18 @@ class Space:
 
         Parameters
         ----------
-        points : Gauss points per direction; ``degree + 1`` if omitted.
+        points : Gauss points per direction, or of each direction; ``degree + 1`` if omitted.
         elements : which elements, all if omitted.
         second : whether to tabulate second derivatives too.
         """
-        u, w = gauss(points or self.degree + 1)
-        local = np.stack(np.meshgrid(u, u, indexing="ij"), axis=-1).reshape(-1, 2)
+        rule = points or self.degree + 1
+        (u, wu), (v, wv) = (gauss(n) for n in (rule if isinstance(rule, tuple) else (rule, rule)))
+        local = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
         chosen = np.arange(self.elements) if elements is None else elements
         e1, e2 = np.divmod(chosen, self.bases[1].elements)
         orders = 2 if second else 1
         one = [self.bases[0].on_elements(u, k)[e1] for k in range(orders + 1)]
-        two = [self.bases[1].on_elements(u, k)[e2] for k in range(orders + 1)]
+        two = [self.bases[1].on_elements(v, k)[e2] for k in range(orders + 1)]
         rows: dict[tuple[int, int], Array] = {}
         for i, j in _ORDERS[: 6 if second else 3]:
             product = one[i][:, :, None, :, None] * two[j][:, None, :, None, :]
@@ -97,7 +98,7 @@ class Space:
             rows[0, 0],
             rows[1, 0],
             rows[0, 1],
-            np.multiply.outer(h1 * h2, np.outer(w, w).ravel()),
+            np.multiply.outer(h1 * h2, np.outer(wu, wv).ravel()),
             start[:, None] + size[:, None] * local,
             np.stack([rows[2, 0], rows[1, 1], rows[0, 2]]) if second else None,
         )

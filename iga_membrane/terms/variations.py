@@ -7,7 +7,9 @@ along ``d_a`` by one unit moves ``x, a_1, a_2`` by ``N_a d_a, N_a,1 d_a, N_a,2 d
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,9 @@ from ..splines import Table
 from .term import BodyDensity
 
 Array = NDArray[np.float64]
+
+COMPILED_FROM = 4000
+"""Elements from which the compiled loops repay about one second of start-up (docs/results)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,14 +90,34 @@ def forces(table: Table, at: ElementPoints, tension: float, body: BodyDensity) -
     return np.asarray(table.stacked.transpose(0, 2, 1) @ rows)
 
 
+def compiled_kernels(elements: int) -> Any:
+    """The compiled loops where a mesh repays their start-up, else None (numpy, same numbers).
+
+    ``IGA_MEMBRANE_NO_NUMBA=1`` switches them off.
+    """
+    if elements < COMPILED_FROM or os.environ.get("IGA_MEMBRANE_NO_NUMBA") == "1":
+        return None
+    try:
+        from .. import _kernels
+    except ImportError:
+        return None
+    return _kernels
+
+
 def hessian(
-    table: Table, at: ElementPoints, tension: float, body: BodyDensity, directions: Array
+    table: Table,
+    at: ElementPoints,
+    tension: float,
+    body: BodyDensity,
+    directions: Array,
+    kernels: Any = None,
 ) -> Array:
     """(elements, local, local) second derivative along given directions.
 
     Parameters
     ----------
     directions : (elements, local, 3) of the local control points.
+    kernels : compiled loops (:func:`compiled_kernels`), or None for numpy.
 
     Notes
     -----
@@ -101,6 +126,13 @@ def hessian(
     (d_a x d_b)`` with ``N' = gamma n + Q e_z``; and the variation of ``Q``. As few columns per
     quadrature point as possible, one product of matrices per element, then symmetrized.
     """
+    if kernels is not None:
+        # one memory layout, so that one compiled version serves
+        arrays = map(np.ascontiguousarray, (
+            table.values, table.d1, table.d2, table.weights, at.a1, at.a2, at.c, at.area,
+            flux(body, at.x), flux_gradient(body, at.x), np.array(body.gradient), directions,
+        ))  # fmt: skip
+        return np.asarray(kernels.hessian(*arrays, float(tension)))
     n = at.c / at.area[..., None]
     w = table.weights
     conjugate = tension * n

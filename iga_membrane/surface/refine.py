@@ -1,0 +1,74 @@
+"""Finer spaces for the same surface: knot insertion and degree elevation, geometry unchanged."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import SceneError
+from ..splines import Basis, bspline_basis, insertion_matrix, tensor_space
+from .surface import Surface
+
+Array = NDArray[np.float64]
+
+
+def refined(surface: Surface, new1: ArrayLike = (), new2: ArrayLike = ()) -> Surface:
+    """Insert knots in the two directions (Boehm); the surface stays the same.
+
+    Parameters
+    ----------
+    surface : of an open tensor-product B-spline or NURBS space.
+    new1, new2 : knots to insert.
+
+    Raises
+    ------
+    SceneError
+        For a Lagrange, periodic or polar space.
+    """
+    bases, operators = [], []
+    for basis, new in zip(_open_bases(surface), (new1, new2), strict=True):
+        assert basis.knots is not None
+        knots, matrix = insertion_matrix(basis.knots, basis.degree, new)
+        bases.append(bspline_basis(knots, basis.degree, continuity=0))
+        operators.append(matrix)
+    return _carried(surface, bases, operators)
+
+
+def elevated(surface: Surface, by: int = 1) -> Surface:
+    """Raise the degree in both directions, keeping the smoothness; the surface stays the same.
+
+    Parameters
+    ----------
+    by : degrees to add, >= 0.
+    """
+    bases, operators = [], []
+    for basis in _open_bases(surface):
+        assert basis.knots is not None
+        values, counts = np.unique(basis.knots, return_counts=True)
+        knots = np.repeat(values, counts + by)
+        finer = bspline_basis(knots, basis.degree + by, continuity=0)
+        # the finer space holds the old functions, so interpolation is exact
+        t = finer.abscissae
+        bases.append(finer)
+        operators.append(np.linalg.solve(finer.matrix(t), basis.matrix(t)))
+    return _carried(surface, bases, operators)
+
+
+def _open_bases(surface: Surface) -> tuple[Basis, Basis]:
+    space = surface.space
+    if space.pole is not None or any(basis.knots is None for basis in space.bases):
+        raise SceneError(
+            "refine: needs an open B-spline or NURBS surface; build a ring, polar or lagrange "
+            "surface anew with more elements"
+        )
+    return space.bases
+
+
+def _carried(surface: Surface, bases: list[Basis], operators: list[Array]) -> Surface:
+    """Homogeneous control points in the finer space."""
+    space, net = surface.space, surface.net
+    weights = np.ones(space.net_shape) if space.weights is None else space.weights
+    homogeneous = np.concatenate([net * weights[..., None], weights[..., None]], axis=-1)
+    fine = np.einsum("ai,bj,ijc->abc", *operators, homogeneous)
+    product = tensor_space(*bases, None if space.weights is None else fine[..., 3])
+    return Surface(product, (fine[..., :3] / fine[..., 3:]).reshape(-1, 3))

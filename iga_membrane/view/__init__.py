@@ -1,0 +1,1 @@
+"""Ways to look at a solution: result file, state file, picture, VTU."""

@@ -1,0 +1,155 @@
+"""Pictures: droplet, substrate, contact line; safe on machines without a screen."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from functools import cache
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from ..solver.measures import contact_line
+
+if TYPE_CHECKING:
+    from ..solver.solution import Solution
+
+Color = Literal["mean_curvature", "pressure", "none"]
+
+_PROBE = (
+    "import pyvista as pv; p = pv.Plotter(off_screen=True, window_size=(16, 16)); "
+    "p.add_mesh(pv.Sphere()); p.screenshot(return_img=True)"
+)
+REMEDY = "on Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri"
+
+
+def plot(
+    solution: Solution,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    color: Color = "mean_curvature",
+    size: tuple[int, int] = (1200, 900),
+    resolution: int = 129,
+) -> Any:
+    """Draw a solution.
+
+    Parameters
+    ----------
+    path : PNG file to write; an interactive window if None.
+    color : "mean_curvature" (exact, from the spline), "pressure" or "none".
+    size : of the picture in pixels.
+    resolution : points along each direction of the patch.
+
+    Raises
+    ------
+    RuntimeError
+        If this machine cannot draw, with what to install.
+    """
+    pv = _pyvista()
+    if path is not None and not can_draw():
+        raise RuntimeError(f"pictures cannot be drawn on this machine: {REMEDY}")
+    plotter = pv.Plotter(off_screen=path is not None, window_size=size)
+    plotter.set_background("white")
+    length = solution.scene.units.length
+    mesh, name = _membrane(solution, color, resolution)
+    options: dict[str, Any] = {"color": "#6fa8dc"}
+    if name:
+        low, high = _range(mesh[name])
+        bar = {"title": name, "color": "black", "fmt": "%.3g", "vertical": True,
+               "position_x": 0.88, "position_y": 0.3, "height": 0.4}  # fmt: skip
+        options = {"scalars": name, "cmap": "viridis", "clim": (low, high), "scalar_bar_args": bar}
+    plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, **options)
+    _substrate(plotter, pv, solution)
+    if solution.scene.substrate is not None:
+        line = contact_line(solution.surface.moved(_local(solution)))
+        world = solution.scene.units.to_world(line.position)
+        curve = pv.lines_from_points(np.vstack([world, world[:1]]))
+        plotter.add_mesh(curve.tube(radius=0.008 * length), color="#cc0000")
+    up = solution.scene.units.axes
+    middle = np.array(mesh.center)
+    view = up @ np.array([1.0, -2.2, 0.55])
+    reach = 1.6 * mesh.length
+    plotter.camera_position = [middle + reach * view / np.linalg.norm(view), middle, up[:, 2]]
+    plotter.enable_anti_aliasing("ssaa")
+    if path is None:
+        return plotter.show()
+    plotter.screenshot(str(path))
+    plotter.close()
+    return None
+
+
+@cache
+def can_draw() -> bool:
+    """Whether one small picture can be drawn, tried in a process of its own.
+
+    Without the right driver VTK does not raise but kills the process.
+    """
+    _headless()
+    run = subprocess.run([sys.executable, "-c", _PROBE], capture_output=True, check=False)
+    return run.returncode == 0
+
+
+def _headless() -> None:
+    """Off-screen rendering by EGL where there is no display; must precede the import of vtk."""
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+
+
+def _pyvista() -> Any:
+    _headless()
+    import pyvista
+
+    return pyvista
+
+
+def _local(solution: Solution) -> Any:
+    return solution.scene.units.to_local(solution.surface.points)
+
+
+def _membrane(solution: Solution, color: Color, resolution: int) -> tuple[Any, str]:
+    """Smooth mesh with exact normals, and the name of its colours."""
+    pv = _pyvista()
+    surface = solution.surface
+    ring, _ = surface.space.bases
+    # stop just short of a pole, where the parametrization has no normal
+    s = np.linspace(ring.breaks[0], ring.breaks[-1], 2 * resolution - 1)
+    t = np.linspace(0.0, 1.0, resolution)
+    if surface.space.pole is not None:
+        t[-1] -= 1e-4
+    k = surface.at(np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1))
+    x, y, z = (np.ascontiguousarray(k.position[..., i])[..., None] for i in range(3))
+    mesh = pv.StructuredGrid(x, y, z).extract_surface(algorithm="dataset_surface")
+    order = _match(mesh.points, k.position.reshape(-1, 3))
+    mesh.point_data.active_normals = k.normal.reshape(-1, 3)[order]
+    if color == "none":
+        return mesh, ""
+    field = k.mean_curvature if color == "mean_curvature" else solution.pressure(k.position)
+    name = "mean curvature" if color == "mean_curvature" else "pressure"
+    mesh[name] = np.asarray(field).reshape(-1)[order]
+    return mesh, name
+
+
+def _match(points: Any, source: Any) -> Any:
+    """Which source point each mesh point is (VTK stores single precision and reorders)."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(source).query(points)[1]
+
+
+def _range(values: Any) -> tuple[float, float]:
+    """Colour range without the few outliers; never empty."""
+    low, high = np.percentile(values, [1.0, 99.0])
+    middle = 0.5 * (low + high)
+    half = max(0.5 * (high - low), 1e-3 * abs(middle), 1e-300)
+    return float(middle - half), float(middle + half)
+
+
+def _substrate(plotter: Any, pv: Any, solution: Solution) -> None:
+    if solution.scene.substrate is None:
+        return
+    scale = solution.scene.units
+    span = 3.0 * float(np.abs(_local(solution)[:, :2]).max())
+    sheet = pv.Plane(center=(0.0, 0.0, -1e-3), i_size=span, j_size=span)
+    sheet.points = scale.to_world(np.asarray(sheet.points, float))
+    plotter.add_mesh(sheet, color="#d9d2c5", ambient=0.3)

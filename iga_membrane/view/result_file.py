@@ -1,0 +1,86 @@
+"""The result file (JSON) and the state file (npz without pickle, with a checksum)."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from .. import __version__
+from ..scenes.scene_file import SCHEMA
+from ..solver.solution import Solution
+
+
+def result(solution: Solution) -> dict[str, Any]:
+    """The record of a solve by the names of the contract; None where a value is not finite."""
+    verdict = solution.audit
+    hold = list(solution.hold_force)
+    record = {
+        "schema": SCHEMA,
+        "version": __version__,
+        "scene": dict(solution.scene.description),
+        "status": solution.status.name,
+        "kind": solution.kind,
+        "success": solution.success,
+        "message": solution.message,
+        "warnings": list(solution.warnings),
+        "stability_scope": solution.scene.sector.model,
+        "index": solution.index,
+        "lambda_min": solution.lambda_min,
+        "bracket": None,
+        "unknowns": solution.unknowns,
+        "load_steps": len(solution.load_steps),
+        "newton_iterations": solution.newton_iterations,
+        "cpu_seconds": dict(solution.cpu_seconds),
+        "measures": dict(solution.measures),
+        "multipliers": dict(solution.multipliers),
+        "contact": {"hold_force": hold, "touches_base": False},
+        "forces": [],
+        "audit": vars(verdict) if verdict else None,
+        "history": [vars(step) | {"status": step.status and step.status.name}
+                    for step in solution.load_steps],
+        "iterations": [vars(step) for step in solution.iterations],
+    }  # fmt: skip
+    cleaned: dict[str, Any] = _finite(record)
+    return cleaned
+
+
+def result_text(solution: Solution) -> str:
+    """JSON text of the result."""
+    return json.dumps(result(solution), indent=1, allow_nan=False) + "\n"
+
+
+def write_state(solution: Solution, path: str) -> None:
+    """Control points and multipliers of a state, in the scene's own scale."""
+    scene = solution.scene
+    points = np.ascontiguousarray(scene.units.to_local(solution.surface.points))
+    multipliers = np.array(list(solution.multipliers.values()))
+    header = {
+        "schema": SCHEMA,
+        "version": __version__,
+        "status": solution.status.name,
+        "scene": _finite(dict(scene.description)),
+        "multipliers": list(solution.multipliers),
+        "sha256": hashlib.sha256(points.tobytes() + multipliers.tobytes()).hexdigest(),
+    }
+    with open(path, "wb") as file:
+        np.savez(
+            file,
+            header=np.frombuffer(json.dumps(header).encode(), np.uint8),
+            points=points,
+            multipliers=multipliers,
+        )
+
+
+def _finite(value: Any) -> Any:
+    """Plain Python values; numbers that JSON cannot hold become None."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(item) for item in value]
+    if isinstance(value, (float, np.floating)):
+        return float(value) if math.isfinite(value) else None
+    return value
