@@ -35,7 +35,9 @@ def number(
     rules = [f"> {above:g}"] if above > -math.inf else []
     rules += [f">= {least:g}"] if least > -math.inf else []
     rules += [f"<= {most:g}"] if most < math.inf else []
-    rule = f"{name} must be {' and '.join(rules) or 'a number'}, finite" + (f" ({unit})" * bool(unit))
+    rule = f"{name} must be {' and '.join(rules) or 'a number'}, finite" + (
+        f" ({unit})" * bool(unit)
+    )
     if isinstance(value, str):
         raise SceneError(
             f"{field} = {value!r}: {rule}; text is not read as a number: give it without quotes "

@@ -45,7 +45,9 @@ def _solve(given: argparse.Namespace) -> int:
     folder = Path(given.out)
     check_folder(folder)
     with _progress() as report:
-        solution = solve(file.scene, SolverOptions(**file.solver), on_fail="return", report=report)
+        solution = solve(
+            file.scene, replace(SolverOptions(), **file.solver), on_fail="return", report=report
+        )
     seconds = {"import": imported, **solution.cpu_seconds, "total": process_time()}
     solution = replace(solution, cpu_seconds=seconds)
     save(solution, folder / "result.json")

@@ -100,7 +100,9 @@ def _profile(pressure: float, bond: float, contact_angle: float) -> tuple[float,
     b = 0.5 * pressure
     d0 = 0.5 * b * r0**2 * (1.0 + r0**2 * (b**2 / 4 + bond / 16))
     tilt = np.arctan(b * r0 * (1.0 + r0**2 * (0.5 * b**2 + bond / 8)))
-    start = np.array([r0, d0, np.pi * r0**2 * d0 / 2, np.pi * r0**2, np.pi * r0**2 * d0**2 / 3, tilt])
+    start = np.array(
+        [r0, d0, np.pi * r0**2 * d0 / 2, np.pi * r0**2, np.pi * r0**2 * d0**2 / 3, tilt]
+    )
     if tilt >= 0.5 * theta:
         raise ValueError("the apex pressure is too large for the volume")
 

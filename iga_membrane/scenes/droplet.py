@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..checks import choice, number, vector
 from ..errors import SceneError
 from ..solids.plane import Plane
@@ -16,11 +16,9 @@ from ..surface.shapes import axisymmetric, drop_space
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import Centroid, Gravity, PlaneContactLine, Scale, SurfaceTension, Term, Volume
-from .liquid import Discretization, Liquid
+from .liquid import MODELS, Discretization, Liquid, Model
 from .scene import Scene
 from .start import Pancake, least_energy_pancake
-
-Array = NDArray[np.float64]
 
 HOLDS = ("none", "x", "xy", "xyz")
 
@@ -118,13 +116,12 @@ def _sector(mesh: Discretization, bond: Array) -> Sector:
     """The model asked for, or the smallest that gravity's direction allows."""
     tiny = 1e-14 * float(np.abs(bond).max())
     along_x, along_y = (abs(float(b)) > tiny for b in bond[:2])
-    smallest = "full" if along_y else "half" if along_x else "eighth"
+    smallest: Model = "full" if along_y else "half" if along_x else "eighth"
     model = mesh.model or smallest
-    order = ("full", "half", "quarter", "eighth")
-    if order.index(model) > order.index(smallest):
+    if MODELS.index(model) > MODELS.index(smallest):
         raise SceneError(
             f'discretization.model = "{model}": gravity leans to '
-            f'{"y" if along_y else "x"} of the substrate, so the droplet has no such mirror '
+            f"{'y' if along_y else 'x'} of the substrate, so the droplet has no such mirror "
             f'planes; "{smallest}" is the smallest model here'
         )
     return Sector(model)

@@ -8,7 +8,8 @@ from typing import Literal
 from ..checks import choice, integer, number
 from ..errors import SceneError
 
-MODELS = ("full", "half", "quarter", "eighth")
+Model = Literal["full", "half", "quarter", "eighth"]
+MODELS: tuple[Model, ...] = ("full", "half", "quarter", "eighth")
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Discretization:
     space: str = "bspline"
     degree: int = 4
     elements: int = 20
-    model: Literal["full", "half", "quarter", "eighth"] | None = None
+    model: Model | None = None
 
     def __post_init__(self) -> None:
         choice("discretization.space", self.space, ("bspline", "nurbs", "lagrange"))

@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -39,6 +39,16 @@ KEYS: dict[str, tuple[str, ...]] = {
                "contact_line", "start", "max_cpu_s", "max_memory_gb"),
     "path": ("parameter", "values"),
 }  # fmt: skip
+
+
+class Limits(TypedDict, total=False):
+    """Bounds of a number, by the names of :func:`iga_membrane.checks.number`."""
+
+    above: float
+    least: float
+    most: float
+
+
 SCENES = ("sessile_droplet", "liquid_sheet", "asperity_cell", "film_between_rings")
 SUBSTRATES = ("plane", "sphere", "sphere_lattice", "spheres", "none")
 
@@ -50,11 +60,11 @@ class SceneFile:
     Attributes
     ----------
     scene : what to solve.
-    solver : the solver's limits, by the names of ``SolverOptions``.
+    solver : the solver's limits that the file sets, by the names of ``SolverOptions``.
     """
 
     scene: Scene
-    solver: dict[str, float]
+    solver: dict[str, Any]
 
 
 def load_scene(path: str | Path) -> SceneFile:
@@ -137,7 +147,7 @@ def _droplet(data: Mapping[str, Any], tables: dict[str, Mapping[str, Any]]) -> S
     for key in substrate:
         if key not in ("kind", "contact_angle"):
             raise SceneError(
-                f'substrate.{key}: a plane has no such field; remove it or choose another '
+                f"substrate.{key}: a plane has no such field; remove it or choose another "
                 f"substrate.kind ({', '.join(SUBSTRATES[1:])})"
             )
     scene = sessile_droplet(
@@ -162,7 +172,7 @@ def _gravity(table: Mapping[str, Any]) -> list[float]:
     return [float(g) for g in size * direction / length]
 
 
-def _solver(table: Mapping[str, Any]) -> dict[str, float]:
+def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
     built = {"motion": "spines", "contact": "exact", "start": "auto"}
     words = {
         "motion": ("spines", "cartesian"),
@@ -197,7 +207,7 @@ def _table(name: str, value: Any, label: str | None = None) -> Mapping[str, Any]
     return value
 
 
-_LIMITS: dict[str, dict[str, float]] = {
+_LIMITS: dict[str, Limits] = {
     "surface_tension": {"above": 0.0},
     "density": {"least": 0.0},
     "volume": {"above": 0.0},
@@ -226,12 +236,12 @@ def _check_numbers(label: str, table: Mapping[str, Any]) -> None:
         elif key in ("degree", "elements"):
             integer(field, value, least=1 if key == "degree" else 3, most=4096)
         else:
-            _check_nested(field, value, _LIMITS.get(key, {}))
+            _check_nested(field, value, _LIMITS.get(key, Limits()))
     if label == "discretization" and "model" in table:
         choice("discretization.model", table["model"], MODELS)
 
 
-def _check_nested(field: str, value: Any, limits: dict[str, float]) -> None:
+def _check_nested(field: str, value: Any, limits: Limits) -> None:
     if isinstance(value, list):
         for i, item in enumerate(value):
             _check_nested(f"{field}[{i}]", item, limits)

@@ -11,11 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..splines.quadrature import gauss
-
-Array = NDArray[np.float64]
 
 STEEPEST = 171.0
 """Contact angle of the start at most (degrees, with gravity): flatter feet start nearly tangent to

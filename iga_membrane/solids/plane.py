@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..checks import contact_angle, vector
 from ..errors import SceneError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

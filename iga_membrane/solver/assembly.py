@@ -7,17 +7,16 @@ from functools import cached_property
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Index
 from ..scenes.scene import Scene
-from ..surface.motion import Spines, sector_elements
+from ..surface.motion import Spines
+from ..surface.sector import sector_elements
 from ..surface.supports import Sliding
 from ..surface.surface import Surface
 from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm
 from ..terms import variations as vary
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,9 +145,7 @@ class Assembly:
         normal = np.einsum("eai,eai->ea", forces, along)
         gradient, scale = self._gather(normal), self._gather(np.abs(normal))
         matrix = self._matrix(
-            vary.hessian(
-                table, at, self._tension, self.density(multipliers), along, self._kernels
-            )
+            vary.hessian(table, at, self._tension, self.density(multipliers), along, self._kernels)
         )
         columns = [
             self._gather(np.einsum("eai,eai->ea", vary.forces(table, at, 0.0, body), along))
@@ -177,10 +174,11 @@ class Assembly:
         at = vary.element_points(self.table, surface.points)
         return self._matrix(vary.mass(self.table, at, directions[self.table.functions]))
 
-    def _gather(self, values: Array, unknowns: NDArray[np.int64] | None = None) -> Array:
+    def _gather(self, values: Array, unknowns: Index | None = None) -> Array:
         """(n,) sums of element contributions by unknown; fixed points (-1) are dropped."""
         where = self._unknowns if unknowns is None else unknowns
-        return np.bincount(where.ravel() + 1, values.ravel(), self.size + 1)[1:]
+        sums = np.bincount(where.ravel() + 1, values.ravel(), self.size + 1)[1:]
+        return sums.astype(float, copy=False)
 
     def _matrix(self, blocks: Array) -> Matrix:
         matrix = Matrix(self.size, None if self.size <= DENSE_LIMIT else self._pattern)

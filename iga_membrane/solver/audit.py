@@ -10,17 +10,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Index
 from ..scenes.scene import Scene
-from ..surface.motion import Motion, sector_elements
+from ..surface.motion import Motion
+from ..surface.sector import sector_elements
 from ..surface.shapes import rational_matrix
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import BodyDensity, PlaneContactLine, SurfaceTension, Volume
 from .measures import ContactLine, contact_line
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -82,9 +81,7 @@ def audit(
         edge = space.edge_table(term.edge, 2 * points[0], ring)
         tangent = edge.d @ surface.points[edge.functions]
         outward = np.stack([tangent[..., 1], -tangent[..., 0], 0 * tangent[..., 0]], axis=-1)
-        pull = edge.values.transpose(0, 2, 1) @ (
-            term.strength * edge.weights[..., None] * outward
-        )
+        pull = edge.values.transpose(0, 2, 1) @ (term.strength * edge.weights[..., None] * outward)
         _scatter(total, absolute, motion, edge.functions, pull)
     residual = float(np.linalg.norm(total[:-1]) / np.linalg.norm(absolute[:-1]))
     inside = sector.copies * float(
@@ -101,18 +98,14 @@ def audit(
     depth = 0.0
     if any(isinstance(s, Sliding) for s in scene.supports):
         depth = max(0.0, -_lowest(surface, points, sector))
-    return Audit(
-        residual, missing, force_defect, line_defect, cosine - float(np.cos(theta)), depth
-    )
+    return Audit(residual, missing, force_defect, line_defect, cosine - float(np.cos(theta)), depth)
 
 
 def _density(body: BodyDensity, x: Array) -> Array:
     return np.asarray(body.constant + x @ np.array(body.gradient))
 
 
-def _scatter(
-    total: Array, absolute: Array, motion: Motion, functions: NDArray[np.int64], force: Array
-) -> None:
+def _scatter(total: Array, absolute: Array, motion: Motion, functions: Index, force: Array) -> None:
     work = np.einsum("eai,eai->ea", force, motion.directions[functions])
     where = motion.unknowns[functions]
     np.add.at(total, where, work)

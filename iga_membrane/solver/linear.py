@@ -10,13 +10,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dsytrf, dsytrs
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from ..arrays import Array, Index
 
 DENSE_LIMIT = 600
 """Up to this many unknowns a dense factorization costs less than a sparse one (docs/results)."""
@@ -197,8 +195,7 @@ class Bordered:
 
     def _solve_once(self, top: Array, bottom: Array) -> tuple[Array, Array]:
         if self._matrix.pattern is None:
-            both, info = dsytrs(self._ldl, self._pivots, np.append(top, bottom), lower=1)
-            both = both.ravel()
+            both = dsytrs(self._ldl, self._pivots, np.append(top, bottom), lower=1)[0].ravel()
             return both[: self._n], both[self._n :]
         s = self._lu.solve(top)
         if not self._m:

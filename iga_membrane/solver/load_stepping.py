@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..surface.reparametrize import arc_length
@@ -15,8 +15,6 @@ from ..surface.surface import Surface
 from .assembly import Assembly
 from .newton import NewtonOptions, NewtonResult, newton
 from .status import Status
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..scenes.scene import Scene
 from ..splines.quadrature import gauss
 from ..splines.space import EDGES
@@ -15,8 +15,6 @@ from ..terms import BodyDensity, Gravity, Scale, SurfaceTension
 from ..terms import variations as vary
 from ..terms.contact_line import wetted_area
 from .assembly import Assembly
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +123,7 @@ def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     return float(-inside * sum(pull, np.zeros(3)) @ origin)
 
 
-def _droplet(
-    surface: Surface, wet: float, body: BodyDensity, scale: Scale
-) -> dict[str, float]:
+def _droplet(surface: Surface, wet: float, body: BodyDensity, scale: Scale) -> dict[str, float]:
     """Heights, radii and angle of a drop on a plane."""
     net = surface.net
     apex = net[0, -1]

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import GeometryError
 from ..splines import Grading
 from ..surface.reparametrize import arc_length, distortion
@@ -21,7 +21,14 @@ from .assembly import Assembly, System
 from .linear import Bordered, SingularMatrix
 from .status import Status
 
-Array = NDArray[np.float64]
+POLISHES = 2
+"""Walks by arc length after the steps have become small; each costs one or two iterations."""
+POLISHED = 1e-6
+"""Distortion that a last walk leaves alone."""
+DISTORTED = 0.2
+"""Distortion that is mended at once, also while steps are large."""
+ROUNDING = 1e-10
+"""Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +81,14 @@ class NewtonResult:
     linear_seconds: float = 0.0
 
 
+class _Stop(Exception):
+    """The iteration ends with a status."""
+
+    def __init__(self, status: Status, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+
+
 def newton(
     assembly: Assembly,
     surface: Surface,
@@ -89,87 +104,98 @@ def newton(
     multipliers : start, or None for the best balance of the start's forces.
     grading : of the arc length, or None to leave the parametrization alone.
     """
-    lines = slice(0, None)
-    result = NewtonResult(surface, np.zeros(len(assembly.constraints)))
-    guess = multipliers
-    polish = 2
-    for _ in range(options.max_iterations):
-        if process_time() > options.deadline:
-            return _ended(result, Status.INTERRUPTED, "the CPU limit was reached")
-        try:
-            motion = assembly.spines.on(result.surface)
-        except GeometryError as error:
-            return _ended(result, Status.NONFINITE, str(error))
-        if guess is None:
-            start = assembly.system(result.surface, motion.directions, result.multipliers)
-            guess = np.linalg.lstsq(start.constraint_gradients, start.gradient)[0]
-        result.multipliers = guess
-        system = assembly.system(result.surface, motion.directions, guess)
-        if not np.isfinite(system.gradient).all():
-            return _ended(result, Status.NONFINITE, "the residual is not finite")
-        before = process_time()
-        try:
-            step, new_multipliers, shift, result.index = _direction(system)
-        except SingularMatrix as error:
-            return _ended(result, Status.LINEAR_SOLVE_FAILED, str(error))
-        finally:
-            result.linear_seconds += process_time() - before
-        displacement = motion.displacement(step)
-        size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
-        residual = float(np.linalg.norm(system.residual(guess)) / system.scale)
-        if not np.isfinite(size):
-            return _ended(result, Status.NONFINITE, "the Newton step is not finite")
-        longest = min(1.0, options.step_limit / size) if size > 0 else 1.0
-        taken, moved = _search(
-            assembly, system, result.surface, displacement, step, new_multipliers, longest
-        )
-        result.iterations.append(Iteration(residual, size, taken, shift))
-        if moved is None:
-            if residual <= 1e-10:
-                return result
-            return _ended(
-                result, Status.STALLED, f"no step along the Newton direction lowers the energy "
-                f"(relative residual {residual:.1e})"
-            )  # fmt: skip
-        result.surface = moved
-        guess = guess + taken * (new_multipliers - guess)
-        result.multipliers = guess
-        if taken == 1.0 and size <= options.tolerance and not shift:
-            return result
-        if residual <= 1e-12 and size <= 1e-6:
-            return result  # rounding floor of an ill-conditioned state
-        if grading is not None:
-            small = size * taken <= options.polish_below
-            allowed = 1e-6 if small else 0.2
-            try:
-                if polish > 0 and distortion(result.surface, grading, lines) > allowed:
-                    result.surface = arc_length(result.surface, grading, lines)
-                    polish -= small
-            except (GeometryError, np.linalg.LinAlgError) as error:
-                return _ended(result, Status.NONFINITE, str(error))
-    return _ended(result, Status.MAX_ITER, f"{options.max_iterations} iterations did not converge")
-
-
-def _ended(result: NewtonResult, status: Status, message: str) -> NewtonResult:
-    result.status, result.message = status, message
+    count = len(assembly.constraints)
+    result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
+    try:
+        if multipliers is None and count:
+            result.multipliers = _best_balance(assembly, surface)
+        _iterate(assembly, result, grading, options)
+    except _Stop as stop:
+        result.status, result.message = stop.status, str(stop)
+    except SingularMatrix as error:
+        result.status, result.message = Status.LINEAR_SOLVE_FAILED, str(error)
+    except (GeometryError, np.linalg.LinAlgError) as error:
+        result.status, result.message = Status.NONFINITE, str(error)
     return result
 
 
-def _direction(system: System) -> tuple[Array, Array, float, int]:
+def _iterate(
+    assembly: Assembly, result: NewtonResult, grading: Grading | None, options: NewtonOptions
+) -> None:
+    """Newton steps until convergence; improves ``result`` in place."""
+    polish = POLISHES
+    for _ in range(options.max_iterations):
+        if process_time() > options.deadline:
+            raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
+        motion = assembly.spines.on(result.surface)
+        system = assembly.system(result.surface, motion.directions, result.multipliers)
+        if not np.isfinite(system.gradient).all():
+            raise _Stop(Status.NONFINITE, "the residual is not finite")
+        before = process_time()
+        direction = _direction(system)
+        result.linear_seconds += process_time() - before
+        result.index = direction.index
+        displacement = motion.displacement(direction.step)
+        size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
+        residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
+        if not np.isfinite(size):
+            raise _Stop(Status.NONFINITE, "the Newton step is not finite")
+        longest = min(1.0, options.step_limit / size) if size > 0 else 1.0
+        taken, moved = _search(assembly, system, result.surface, displacement, direction, longest)
+        result.iterations.append(Iteration(residual, size, taken, direction.shift))
+        if moved is None:
+            if residual <= ROUNDING:
+                return
+            raise _Stop(
+                Status.STALLED,
+                f"no step along the Newton direction lowers the energy (relative residual "
+                f"{residual:.1e})",
+            )
+        result.surface = moved
+        result.multipliers = result.multipliers + taken * (
+            direction.multipliers - result.multipliers
+        )
+        full = taken == 1.0 and not direction.shift
+        if full and (size <= options.tolerance or (residual <= 1e-12 and size <= 1e-6)):
+            return  # converged, or at the rounding floor of an ill-conditioned state
+        if grading is not None and polish:
+            small = size * taken <= options.polish_below
+            allowed = POLISHED if small else DISTORTED
+            if distortion(result.surface, grading) > allowed:
+                result.surface = arc_length(result.surface, grading)
+                polish -= small
+    raise _Stop(Status.MAX_ITER, f"{options.max_iterations} iterations did not converge")
+
+
+def _best_balance(assembly: Assembly, surface: Surface) -> Array:
+    """Multipliers that leave the least of the forces of a state."""
+    motion = assembly.spines.on(surface)
+    system = assembly.system(surface, motion.directions, np.zeros(len(assembly.constraints)))
+    return np.asarray(np.linalg.lstsq(system.constraint_gradients, system.gradient)[0], float)
+
+
+@dataclass(frozen=True, eq=False)
+class _Direction:
+    """Newton step, new multipliers, the shift it needed, and the index without the shift."""
+
+    step: Array
+    multipliers: Array
+    shift: float
+    index: int
+
+
+def _direction(system: System) -> _Direction:
     """Newton step; the diagonal is shifted until the Hessian is positive where it must be."""
     border = system.constraint_gradients
-    index = None
-    shift = 0.0
-    for _ in range(12):
-        diagonal = np.abs(system.matrix.diagonal())
-        diagonal = np.maximum(diagonal, diagonal.max() * 1e-6)
-        factor = Bordered(system.matrix, border, shift * diagonal if shift else None)
-        index = factor.index if index is None else index
-        if factor.index <= 0:
-            break
+    diagonal = np.abs(system.matrix.diagonal())
+    diagonal = np.maximum(diagonal, 1e-6 * diagonal.max(initial=0.0))
+    factor = Bordered(system.matrix, border)
+    index, shift = factor.index, 0.0
+    while factor.index > 0 and shift < 1e8:
         shift = max(10.0 * shift, 1e-3)
+        factor = Bordered(system.matrix, border, shift * diagonal)
     step, multipliers = factor.solve(-system.gradient, -system.constraints)
-    return step, -multipliers, shift, index
+    return _Direction(step, -multipliers, shift, index)
 
 
 def _search(
@@ -177,8 +203,7 @@ def _search(
     system: System,
     surface: Surface,
     displacement: Array,
-    step: Array,
-    multipliers: Array,
+    direction: _Direction,
     longest: float,
 ) -> tuple[float, Surface | None]:
     """Backtrack on ``E - m . c + kappa/2 |c|^2``; the part taken and the new state, or None.
@@ -187,8 +212,9 @@ def _search(
     kappa makes it negative even where K is not.
     """
     start = assembly.energies(surface)
-    c = system.constraints
-    slope = float(system.gradient @ step - multipliers @ (system.constraint_gradients.T @ step))
+    c, multipliers = system.constraints, direction.multipliers
+    along = system.gradient - system.constraint_gradients @ multipliers
+    slope = float(along @ direction.step)
     square = float(c @ c)
     kappa = 1.0
     if square > 0 and slope - kappa * square > -abs(slope):

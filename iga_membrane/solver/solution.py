@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..scenes.scene import Scene
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
@@ -18,8 +18,6 @@ from .audit import Audit
 from .load_stepping import LoadStep
 from .newton import Iteration
 from .status import Status
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from time import process_time
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..splines import Grading
@@ -28,7 +28,6 @@ from .solution import Solution
 from .stability import Stability, stability
 from .status import Status
 
-Array = NDArray[np.float64]
 log = logging.getLogger("iga_membrane")
 
 

@@ -10,14 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Index
 from ..errors import SceneError
 from .bernstein import bernstein, extraction
 from .knots import check_knots, greville, open_knots
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +66,12 @@ class Basis:
 
     def locate(self, t: ArrayLike) -> tuple[Index, Array]:
         """Element and local coordinate in [0, 1] of each point; a ring wraps round."""
-        t = np.asarray(t, float)
+        x = np.asarray(t, float)
         first, last = self.breaks[0], self.breaks[-1]
         if self.periodic:
-            t = first + np.mod(t - first, last - first)
-        element = np.clip(np.searchsorted(self.breaks, t, "right") - 1, 0, self.elements - 1)
-        return element, (t - self.breaks[element]) / self.sizes[element]
+            x = first + np.mod(x - first, last - first)
+        element = np.clip(np.searchsorted(self.breaks, x, "right") - 1, 0, self.elements - 1)
+        return element, (x - self.breaks[element]) / self.sizes[element]
 
     def at(self, t: ArrayLike, derivative: int = 0) -> tuple[Index, Array]:
         """Functions alive at each point and their values: two arrays (points, p + 1)."""
@@ -97,8 +95,10 @@ class Basis:
         if self.continuity >= 1:
             return self.matrix(self.abscissae, 1)
         step = 1e-9 * self.sizes.min()
-        inside = self.abscissae if self.periodic else np.clip(
-            self.abscissae, self.breaks[0] + step, self.breaks[-1] - step
+        inside = (
+            self.abscissae
+            if self.periodic
+            else np.clip(self.abscissae, self.breaks[0] + step, self.breaks[-1] - step)
         )
         return 0.5 * (self.matrix(inside - step, 1) + self.matrix(inside + step, 1))
 
@@ -133,7 +133,7 @@ def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basi
 
 
 def periodic_basis(elements: int, degree: int, length: float = 1.0) -> Basis:
-    """Uniform B-splines on a ring of ``elements`` elements; function ``i`` starts at element ``i``."""
+    """Uniform B-splines on a ring; function ``i`` starts at element ``i``."""
     if degree < 2:
         raise SceneError(f"degree {degree} is not C1: C1 needed, so degree >= 2 (got {degree})")
     if elements <= degree:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import SceneError
-
-Array = NDArray[np.float64]
 
 
 def open_knots(breaks: ArrayLike, degree: int, continuity: int | None = None) -> Array:

@@ -12,12 +12,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import SceneError
 from .space import Space
-
-Array = NDArray[np.float64]
 
 CORNERS = 2.0 * np.pi * np.arange(3) / 3.0
 
@@ -34,8 +32,7 @@ def close_pole(space: Space) -> Space:
     The result has the control points of the remaining rings, ring point ``(i, j)`` at number
     ``i * rings + j``, then three at a C1 pole (one at the C0 pole of a Lagrange space).
     """
-    ring, meridian = space.bases
-    if not ring.periodic:
+    if not space.bases[0].periodic:
         raise SceneError("a pole closes a ring: the first basis must be periodic")
     smooth = min(space.continuity, 1)
     joined, corners = (2, 3) if smooth else (1, 1)
@@ -65,9 +62,8 @@ def net_of(space: Space, points: Array) -> Array:
     n1, n2 = space.net_shape
     if space.pole is None:
         return points.reshape(n1, n2, -1)
-    joined = 2 if space.pole else 1
     net = np.empty((n1, n2, points.shape[1]))
-    rings = n2 - joined
+    rings = n2 - space.joined_rings
     net[:, :rings] = points[: n1 * rings].reshape(n1, rings, -1)
     corners = points[n1 * rings :]
     net[:, -1] = corners.mean(axis=0)
@@ -82,7 +78,6 @@ def points_of(space: Space, net: Array) -> Array:
     n1, n2 = space.net_shape
     if space.pole is None:
         return net.reshape(n1 * n2, -1)
-    joined = 2 if space.pole else 1
     centre = net[:, -1].mean(axis=0)
     corners = centre[None]
     if space.pole:
@@ -90,4 +85,4 @@ def points_of(space: Space, net: Array) -> Array:
         offset = net[:, -2] - centre
         along = 2.0 / n1 * np.stack([np.cos(phi), np.sin(phi)]) @ offset
         corners = centre + 2.0 * np.stack([np.cos(CORNERS), np.sin(CORNERS)], axis=1) @ along
-    return np.concatenate([net[:, : n2 - joined].reshape(-1, net.shape[-1]), corners])
+    return np.concatenate([net[:, : n2 - space.joined_rings].reshape(-1, net.shape[-1]), corners])

@@ -8,13 +8,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, Index
 from ..errors import SceneError
 from .basis import Basis
 from .quadrature import gauss
 from .table import EdgeTable, Table
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+Rows = dict[tuple[int, int], Array]
+"""Derivative (i, j) to its table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +59,11 @@ class Space:
         return len(self.functions)
 
     @property
+    def joined_rings(self) -> int:
+        """Rings of the control net that a pole rules: 2 at a C1 pole, 1 at a C0 pole."""
+        return {None: 0, 0: 1, 1: 2}[self.pole]
+
+    @property
     def net_shape(self) -> tuple[int, int]:
         """Shape of the tensor-product control net (before a pole joins any of it)."""
         return self.bases[0].count, self.bases[1].count
@@ -85,7 +91,7 @@ class Space:
         orders = 2 if second else 1
         one = [self.bases[0].on_elements(u, k)[e1] for k in range(orders + 1)]
         two = [self.bases[1].on_elements(v, k)[e2] for k in range(orders + 1)]
-        rows: dict[tuple[int, int], Array] = {}
+        rows: Rows = {}
         for i, j in _ORDERS[: 6 if second else 3]:
             product = one[i][:, :, None, :, None] * two[j][:, None, :, None, :]
             rows[i, j] = product.reshape(len(chosen), len(local), -1)
@@ -103,7 +109,7 @@ class Space:
             np.stack([rows[2, 0], rows[1, 1], rows[0, 2]]) if second else None,
         )
 
-    def at(self, xi: ArrayLike, orders: int = 2) -> tuple[Index, dict[tuple[int, int], Array]]:
+    def at(self, xi: ArrayLike, orders: int = 2) -> tuple[Index, Rows]:
         """Functions at any points.
 
         Parameters
@@ -122,7 +128,7 @@ class Space:
         chosen = e1 * self.bases[1].elements + e2
         one = [self.bases[0].at(xi[:, 0], k)[1] for k in range(orders + 1)]
         two = [self.bases[1].at(xi[:, 1], k)[1] for k in range(orders + 1)]
-        rows = {
+        rows: Rows = {
             (i, j): (one[i][:, :, None] * two[j][:, None, :]).reshape(len(xi), 1, -1)
             for i, j in _ORDERS
             if i + j <= orders
@@ -170,7 +176,7 @@ class Space:
         grids = np.meshgrid(self.bases[0].abscissae, self.bases[1].abscissae, indexing="ij")
         return np.stack(grids, axis=-1)
 
-    def _finish(self, rows: dict[tuple[int, int], Array], elements: Index) -> dict:
+    def _finish(self, rows: Rows, elements: Index) -> Rows:
         """Make tensor products rational, then combine them at a pole. Rows (e, q, local)."""
         if self.weights is not None:
             tensor = _tensor_functions(self.bases)[elements]
@@ -217,19 +223,17 @@ def tensor_space(one: Basis, two: Basis, weights: ArrayLike | None = None) -> Sp
     return Space((one, two), _tensor_functions((one, two)), one.count * two.count, checked)
 
 
-
-
 def _tensor_functions(bases: tuple[Basis, Basis]) -> Index:
     one, two = bases
     grid = one.functions[:, None, :, None] * two.count + two.functions[None, :, None, :]
     return grid.reshape(one.elements * two.elements, -1)
 
 
-def _rational(rows: dict[tuple[int, int], Array], w: Array) -> dict[tuple[int, int], Array]:
+def _rational(rows: Rows, w: Array) -> Rows:
     """NURBS from B-splines by the quotient rule: R = w N / W, W = sum w N."""
     num = {key: row * w for key, row in rows.items()}
     total = {key: row.sum(axis=-1, keepdims=True) for key, row in num.items()}
-    out: dict[tuple[int, int], Array] = {}
+    out: Rows = {}
     for key in rows:
         i, j = key
         value = num[key]
@@ -240,10 +244,7 @@ def _rational(rows: dict[tuple[int, int], Array], w: Array) -> dict[tuple[int, i
             value = value - 2 * total[first] * out[first] - total[key] * out[0, 0]
         elif (i, j) == (1, 1):
             value = (
-                value
-                - total[1, 0] * out[0, 1]
-                - total[0, 1] * out[1, 0]
-                - total[1, 1] * out[0, 0]
+                value - total[1, 0] * out[0, 1] - total[0, 1] * out[1, 0] - total[1, 1] * out[0, 0]
             )
         out[key] = value / total[0, 0]
     return out

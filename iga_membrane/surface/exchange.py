@@ -37,7 +37,7 @@ def from_geomdl(surface: Any) -> Surface:
     if weights is not None:
         weights = np.array(weights, float).reshape(shape)
     points = np.array(surface.ctrlpts, float).reshape(-1, 3)
-    return Surface(tensor_space(*bases, weights), points)
+    return Surface(tensor_space(bases[0], bases[1], weights), points)
 
 
 def to_geomdl(surface: Surface) -> Any:
@@ -48,7 +48,7 @@ def to_geomdl(surface: Surface) -> Any:
     SceneError
         For Lagrange, periodic or polar spaces, which geomdl does not have.
     """
-    from geomdl import BSpline, NURBS
+    from geomdl import NURBS, BSpline
 
     space = surface.space
     if space.pole is not None or any(basis.knots is None for basis in space.bases):

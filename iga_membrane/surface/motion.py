@@ -12,16 +12,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..errors import GeometryError, SceneError
-from ..splines import Space, net_of, ring_angles
+from ..arrays import Array, Index
+from ..errors import GeometryError
+from ..splines import Space, net_of
 from ..splines.space import EDGES
+from .sector import sector_images
 from .supports import Fixed, Joint, Sector, Sliding, Support, Symmetry
 from .surface import Surface
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,10 +57,10 @@ class Spines:
         self.space = space
         self._sliding = [s.edge for s in supports if isinstance(s, Sliding)]
         self._mirrors: list[tuple[Index, int]] = []
-        owner = np.arange(space.count)
+        owner: Index = np.arange(space.count)
         for support in supports:
             if isinstance(support, Sector) and support.model != "full":
-                owner = _images(space, support)[owner]
+                owner = sector_images(space, support)[owner]
             elif isinstance(support, Joint):
                 first, second = (space.edge_functions(edge) for edge in support.edges)
                 owner[second] = owner[first]
@@ -166,50 +164,5 @@ def _points_of_field(space: Space, net: Array) -> Array:
     """Control points' values of a field given on the net; at a pole its value there."""
     if space.pole is None:
         return net.reshape(-1, 3)
-    joined = 2 if space.pole else 1
     corners = np.repeat(net[:1, -1], 3 if space.pole else 1, axis=0)
-    return np.concatenate([net[:, : net.shape[1] - joined].reshape(-1, 3), corners])
-
-
-def _images(space: Space, sector: Sector) -> Index:
-    """(count,) the control point of which each is a mirror image (or itself)."""
-    ring, _ = space.bases
-    if not ring.periodic or ring.elements % sector.copies:
-        raise SceneError(
-            f'model = "{sector.model}" needs a closed ring of elements that {sector.copies} '
-            f"divides (got {ring.elements})"
-        )
-    n1 = ring.count
-    per_element = n1 // ring.elements
-    # Mirroring xi -> turn - xi carries the function at abscissa index i to (shift - i): found
-    # from the sum of abscissae, which is a whole number of index steps.
-    first = ring.abscissae[0] / (ring.breaks[-1] / n1)
-    indices = np.arange(n1)
-    owner = indices.copy()
-    for fold in {"half": [0.0], "quarter": [0.0, 0.5], "eighth": [0.0, 0.5, 0.25]}[sector.model]:
-        shift = round(fold * n1 - 2 * first)
-        image = (shift - indices) % n1
-        for _ in range(sector.copies):
-            owner = np.minimum(owner, owner[image])
-            owner = owner[owner]
-    assert per_element * ring.elements == n1
-    result = np.arange(space.count)
-    joined = {None: 0, 0: 1, 1: 2}[space.pole]
-    rings = space.net_shape[1] - joined
-    result[: n1 * rings] = (owner[:, None] * rings + np.arange(rings)).ravel()
-    if space.pole == 1:
-        corner = n1 * rings
-        if sector.model == "half":
-            result[corner + 2] = corner + 1
-        else:
-            result[corner + 1 :] = corner
-    return result
-
-
-def sector_elements(space: Space, sector: Sector) -> Index:
-    """Numbers of the elements in one sector."""
-    ring, meridian = space.bases
-    return np.arange(ring.elements // sector.copies * meridian.elements)
-
-
-__all__ = ["Motion", "Spines", "ring_angles", "sector_elements"]
+    return np.concatenate([net[:, : net.shape[1] - space.joined_rings].reshape(-1, 3), corners])

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array
 from ..errors import SceneError
 from ..splines import Basis, bspline_basis, insertion_matrix, tensor_space
 from .surface import Surface
-
-Array = NDArray[np.float64]
 
 
 def refined(surface: Surface, new1: ArrayLike = (), new2: ArrayLike = ()) -> Surface:
@@ -64,11 +65,11 @@ def _open_bases(surface: Surface) -> tuple[Basis, Basis]:
     return space.bases
 
 
-def _carried(surface: Surface, bases: list[Basis], operators: list[Array]) -> Surface:
+def _carried(surface: Surface, bases: Sequence[Basis], operators: list[Array]) -> Surface:
     """Homogeneous control points in the finer space."""
     space, net = surface.space, surface.net
     weights = np.ones(space.net_shape) if space.weights is None else space.weights
     homogeneous = np.concatenate([net * weights[..., None], weights[..., None]], axis=-1)
     fine = np.einsum("ai,bj,ijc->abc", *operators, homogeneous)
-    product = tensor_space(*bases, None if space.weights is None else fine[..., 3])
+    product = tensor_space(bases[0], bases[1], None if space.weights is None else fine[..., 3])
     return Surface(product, (fine[..., :3] / fine[..., 3:]).reshape(-1, 3))

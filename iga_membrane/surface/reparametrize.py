@@ -7,14 +7,12 @@ serves all of them, so the polar form of a pole is kept and the map is linear in
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..splines import Grading, net_of, points_of
 from ..splines.quadrature import gauss
 from .shapes import meridian_interpolation, rational_matrix
 from .surface import Surface
-
-Array = NDArray[np.float64]
 
 
 class MeridianLength:
@@ -43,9 +41,7 @@ class MeridianLength:
         return np.asarray(np.linalg.norm(velocity, axis=-1).mean(axis=1))
 
     def __call__(self, t: Array) -> Array:
-        element = np.clip(
-            np.searchsorted(self._breaks, t, "right") - 1, 0, len(self._breaks) - 2
-        )
+        element = np.clip(np.searchsorted(self._breaks, t, "right") - 1, 0, len(self._breaks) - 2)
         return np.asarray(self._cumulated[element] + self._piece(self._breaks[element], t))
 
     def inverse(self, s: Array) -> Array:

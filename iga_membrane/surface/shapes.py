@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import SceneError
 from ..splines import (
     Basis,
@@ -21,8 +22,6 @@ from ..splines import (
     tensor_space,
 )
 from .surface import Surface
-
-Array = NDArray[np.float64]
 
 
 def arc(start: float, end: float) -> tuple[Basis, Array, Array]:
@@ -45,7 +44,7 @@ def arc(start: float, end: float) -> tuple[Basis, Array, Array]:
     return bspline_basis(knots, 2, continuity=0), points, weights
 
 
-def revolution(basis: Basis, profile: ArrayLike, weights: ArrayLike) -> Surface:
+def revolution(basis: Basis, profile: ArrayLike, weights: Array) -> Surface:
     """Exact surface of revolution of a NURBS profile about the z axis.
 
     Parameters
@@ -91,9 +90,7 @@ def disc(radius: float) -> Surface:
     return revolution(basis, [[radius, 0.0], [0.0, 0.0]], np.ones(2))
 
 
-def sheet(
-    size: float, *, elements: int = 8, degree: int = 3, space: str = "bspline"
-) -> Surface:
+def sheet(size: float, *, elements: int = 8, degree: int = 3, space: str = "bspline") -> Surface:
     """Flat square sheet centred in z = 0, normal up, edges parallel to x and y.
 
     Parameters
@@ -182,9 +179,7 @@ def rational_matrix(space: Space, t: Array, derivative: int = 0) -> Array:
     return np.asarray((matrix - basis.matrix(t) * (slope / total)[:, None]) * w / total[:, None])
 
 
-def axisymmetric(
-    space: Space, profile: Callable[[Array], tuple[Array, Array, Array]]
-) -> Surface:
+def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Array]]) -> Surface:
     """Interpolate a surface of revolution in a ring space closed by a pole.
 
     Parameters

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import GeometryError
 from ..splines import Space, Table, net_of
 from .kinematics import Kinematics
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +55,7 @@ class Surface:
         local = self.points[functions]
         shape = xi.shape[:-1]
         x = {
-            key: np.einsum("ta,tai->ti", row, local).reshape(*shape, 3)
-            for key, row in rows.items()
+            key: np.einsum("ta,tai->ti", row, local).reshape(*shape, 3) for key, row in rows.items()
         }
         second = None
         if orders == 2:

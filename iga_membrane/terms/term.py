@@ -13,12 +13,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..arrays import Array
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..splines import Table
 from .term import BodyDensity
-
-Array = NDArray[np.float64]
 
 COMPILED_FROM = 4000
 """Elements from which the compiled loops repay about one second of start-up (docs/results)."""
@@ -151,7 +149,8 @@ def hessian(
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         turned = (
-            along[:, None, j] * conjugate[..., k, None] - along[:, None, k] * conjugate[..., j, None]
+            along[:, None, j] * conjugate[..., k, None]
+            - along[:, None, k] * conjugate[..., j, None]
         )
         left.append(table.d1 * along[:, None, i] * w[..., None])
         right.append(table.d2 * turned)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Index
 from ..surface.surface import Surface
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
 
-Array = NDArray[np.float64]
 
 BEZIER_QUADRILATERAL = 77
 
@@ -28,7 +27,7 @@ def bezier_net(surface: Surface) -> Array:
     return np.asarray(cells.reshape(-1, *cells.shape[2:]))
 
 
-def bezier_order(p1: int, p2: int) -> NDArray[np.int64]:
+def bezier_order(p1: int, p2: int) -> Index:
     """VTK's order of a Bezier quadrilateral: corners, edges, inside (first index fastest)."""
     corners = [(0, 0), (p1, 0), (p1, p2), (0, p2)]
     along = [(i, 0) for i in range(1, p1)]
