@@ -27,6 +27,8 @@ POLISHED = 1e-6
 """Distortion that a last walk leaves alone."""
 DISTORTED = 0.2
 """Distortion that is mended at once, also while steps are large."""
+NEAR = 1e-3
+"""Relative residual below which an unstable equilibrium is approached, not fled."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -68,7 +70,8 @@ class NewtonResult:
     Attributes
     ----------
     status : None where it converged.
-    surface, multipliers : the best state.
+    surface, multipliers : the equilibrium, or the state of smallest residual met.
+    best : that residual and state.
     index : negative eigenvalues of the last Hessian on the constraints' null space.
     """
 
@@ -77,6 +80,7 @@ class NewtonResult:
     status: Status | None = None
     message: str = ""
     index: int = 0
+    best: tuple[float, Surface, Array] | None = None
     iterations: list[Iteration] = field(default_factory=list)
     linear_seconds: float = 0.0
 
@@ -110,12 +114,15 @@ def newton(
         if multipliers is None and count:
             result.multipliers = _best_balance(assembly, surface)
         _iterate(assembly, result, grading, options)
+        return result
     except _Stop as stop:
         result.status, result.message = stop.status, str(stop)
     except SingularMatrix as error:
         result.status, result.message = Status.LINEAR_SOLVE_FAILED, str(error)
     except (GeometryError, np.linalg.LinAlgError) as error:
         result.status, result.message = Status.NONFINITE, str(error)
+    if result.best is not None:
+        _, result.surface, result.multipliers = result.best
     return result
 
 
@@ -124,20 +131,24 @@ def _iterate(
 ) -> None:
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
+    flee = False
     for _ in range(options.max_iterations):
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
         motion = assembly.spines.on(result.surface)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
-        if not np.isfinite(system.gradient).all():
+        residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
+        if not np.isfinite(residual):
             raise _Stop(Status.NONFINITE, "the residual is not finite")
+        flee = flee or (result.best is not None and residual > 2.0 * result.best[0] > 0)
+        if result.best is None or residual < result.best[0]:
+            result.best = (residual, result.surface, result.multipliers)
         before = process_time()
-        direction = _direction(system)
+        direction = _direction(system, plain=residual <= NEAR and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
         displacement = motion.displacement(direction.step)
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
-        residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")
         longest = min(1.0, options.step_limit / size) if size > 0 else 1.0
@@ -184,14 +195,17 @@ class _Direction:
     index: int
 
 
-def _direction(system: System) -> _Direction:
-    """Newton step; the diagonal is shifted until the Hessian is positive where it must be."""
+def _direction(system: System, *, plain: bool) -> _Direction:
+    """Newton step; the diagonal is shifted until the Hessian is positive where it must be.
+
+    ``plain`` leaves the shift out: the step then leads to the nearest equilibrium, stable or not.
+    """
     border = system.constraint_gradients
     diagonal = np.abs(system.matrix.diagonal())
     diagonal = np.maximum(diagonal, 1e-6 * diagonal.max(initial=0.0))
     factor = Bordered(system.matrix, border)
     index, shift = factor.index, 0.0
-    while factor.index > 0 and shift < 1e8:
+    while factor.index > 0 and not plain and shift < 1e8:
         shift = max(10.0 * shift, 1e-3)
         factor = Bordered(system.matrix, border, shift * diagonal)
     step, multipliers = factor.solve(-system.gradient, -system.constraints)
@@ -220,6 +234,7 @@ def _search(
     if square > 0 and slope - kappa * square > -abs(slope):
         kappa = 2.0 * abs(slope) / square + 1.0
     slope -= kappa * square
+    uphill = direction.index > 0 and not direction.shift  # towards a saddle: no descent to ask for
 
     def merit(total: float, missing: Array) -> float:
         return float(total - multipliers @ missing + 0.5 * kappa * missing @ missing)
@@ -234,7 +249,7 @@ def _search(
         if (
             energies.regular_after(start)
             and not (assembly.above_plane and energies.lowest < -1e-9)
-            and value <= begin + 1e-4 * part * slope + noise
+            and (uphill or value <= begin + 1e-4 * part * slope + noise)
         ):
             return part, trial
         part *= 0.5

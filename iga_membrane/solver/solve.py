@@ -128,7 +128,7 @@ def _iterate(
     path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
     stepped = path.result
     stepped.linear_seconds += direct.linear_seconds
-    if stepped.status is None or direct.status is not None:
+    if stepped.status is None or path.last_good > 0:
         return stepped, steps + path.steps
     return direct, steps + path.steps
 

@@ -63,7 +63,9 @@ class PlaneContactLine(LineTerm):
 def wetted_area(table: EdgeTable, points: Array) -> float:
     """Area between an edge in z = 0 and the origin, counterclockwise positive."""
     x, dx = _curve(table, points)
-    return float(0.5 * ((x[..., 0] * dx[..., 1] - x[..., 1] * dx[..., 0]) * table.weights).sum())
+    moment = x[..., 0] * dx[..., 1] - x[..., 1] * dx[..., 0]
+    area: float = 0.5 * (moment * table.weights).sum()
+    return area
 
 
 def _curve(table: EdgeTable, points: Array) -> tuple[Array, Array]:

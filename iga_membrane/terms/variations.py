@@ -69,7 +69,7 @@ def flux_gradient(body: BodyDensity, x: Array) -> Array:
 
 def energies(table: Table, at: ElementPoints, bodies: list[BodyDensity]) -> tuple[float, Array]:
     """Area of the elements and their integral of each body density."""
-    area = float((at.area * table.weights).sum())
+    area = (at.area * table.weights).sum()
     weighted = at.c[..., 2] * table.weights
     return area, np.array([(flux(body, at.x) * weighted).sum() for body in bodies])
 

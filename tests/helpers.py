@@ -1,0 +1,54 @@
+"""Scenes and checks that several tests share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import iga_membrane as iga
+
+UNIT_VOLUME = 4.0 * np.pi / 3.0
+MEASURES = ("height", "contact_radius", "p_base", "energy", "A_LG", "A_wet")
+
+
+def droplet(contact_angle, bond=0.0, *, quadrature=None, hold="none", **mesh):
+    """Drop of unit radius on a plane."""
+    return iga.sessile_droplet(
+        iga.Plane(contact_angle=contact_angle),
+        volume=UNIT_VOLUME,
+        gravity=bond,
+        hold=hold,
+        discretization=iga.Discretization(**mesh),
+    )
+
+
+def solved(contact_angle, bond=0.0, options=None, **mesh):
+    return iga.solve(droplet(contact_angle, bond, **mesh), options)
+
+
+def worst(measures, exact, names=MEASURES):
+    """Largest relative error among measures."""
+    return max(abs(measures[name] / exact[name] - 1.0) for name in names)
+
+
+def slopes(errors):
+    """Rates between successive halvings."""
+    errors = np.abs(np.asarray(errors, float))
+    return np.log2(errors[:-1] / errors[1:])
+
+
+def pinned_cap(opening, terms, model="full", *, rim=1.0, kind="bspline", degree=3, elements=8):
+    """Spherical cap pinned on a circle; ``opening`` is its half angle in radians."""
+    from iga_membrane.surface.shapes import axisymmetric, drop_space
+
+    radius = rim / np.sin(opening)
+
+    def profile(t):
+        u = opening * (1.0 - t)
+        return (
+            radius * np.sin(u),
+            radius * (np.cos(u) - np.cos(opening)),
+            -radius * opening * np.cos(u),
+        )
+
+    surface = axisymmetric(drop_space(kind, degree, elements, angle=opening), profile)
+    return iga.Scene(surface, terms, [iga.Fixed("xi2=0"), iga.Sector(model)])
