@@ -17,7 +17,9 @@ def remainder_slopes(value, gradient, curvature):
     """
     start = value(0.0)
     first = np.array([abs(value(h) - start - h * gradient) for h in STEPS])
-    second = np.array([abs(value(h) - start - h * gradient - 0.5 * h**2 * curvature) for h in STEPS])
+    second = np.array(
+        [abs(value(h) - start - h * gradient - 0.5 * h**2 * curvature) for h in STEPS]
+    )
     floor = 1e-13 * abs(start)
     return _slope(first, floor), _slope(second, floor)
 

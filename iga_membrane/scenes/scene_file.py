@@ -41,6 +41,9 @@ KEYS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
+LISTS = ("direction", "contact_angle", "offset", "centers", "radii", "center", "values")
+
+
 class Limits(TypedDict, total=False):
     """Bounds of a number, by the names of :func:`iga_membrane.checks.number`."""
 
@@ -242,7 +245,7 @@ def _check_numbers(label: str, table: Mapping[str, Any]) -> None:
 
 
 def _check_nested(field: str, value: Any, limits: Limits) -> None:
-    if isinstance(value, list):
+    if isinstance(value, list) and field.rpartition(".")[2].partition("[")[0] in LISTS:
         for i, item in enumerate(value):
             _check_nested(f"{field}[{i}]", item, limits)
     else:

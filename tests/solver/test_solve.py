@@ -74,7 +74,9 @@ def test_pressure_is_the_derivative_of_energy_by_volume():
     assert slope == pytest.approx(middle.measures["p_base"], rel=1e-6)
 
 
-@pytest.mark.parametrize(("length", "tension"), [(1e-9, 0.072), (1e-3, 0.072), (1e3, 1e6), (2, 1e-6)])
+@pytest.mark.parametrize(
+    ("length", "tension"), [(1e-9, 0.072), (1e-3, 0.072), (1e3, 1e6), (2, 1e-6)]
+)
 def test_units_do_not_change_the_digits(length, tension):
     base = solved(150, 1.0)
     density = 1000.0
@@ -154,9 +156,7 @@ def test_too_few_iterations_are_named_and_carry_the_state():
 
 
 def test_cpu_limit_interrupts_with_a_state():
-    solution = iga.solve(
-        droplet(150, 1.0), iga.SolverOptions(max_cpu_s=1e-3), on_fail="return"
-    )
+    solution = iga.solve(droplet(150, 1.0), iga.SolverOptions(max_cpu_s=1e-3), on_fail="return")
     assert solution.status is iga.Status.INTERRUPTED
     assert np.isfinite(solution.surface.points).all()
 

@@ -65,7 +65,9 @@ def test_derivatives_agree_with_differences(space):
 
 @pytest.mark.parametrize("degree", [2, 3, 4])
 def test_polar_functions_are_tensor_functions_with_a_common_tangent_plane(degree):
-    base = tensor_space(ring_basis("bspline", 9, degree, 2 * np.pi), line_basis("bspline", 4, degree))
+    base = tensor_space(
+        ring_basis("bspline", 9, degree, 2 * np.pi), line_basis("bspline", 4, degree)
+    )
     polar = close_pole(base)
     points = np.random.default_rng(1).standard_normal((polar.count, 3))
     net = net_of(polar, points)

@@ -3,8 +3,8 @@ import pytest
 from helpers import droplet, pinned_cap
 
 import iga_membrane as iga
-from iga_membrane.surface.reparametrize import arc_length, distortion
 from iga_membrane.splines import Grading
+from iga_membrane.surface.reparametrize import arc_length, distortion
 
 
 def moved(scene, seed=0, size=0.05):

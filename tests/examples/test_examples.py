@@ -1,0 +1,27 @@
+"""Every example runs and returns the physics it claims."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def load(name):
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_example_has_a_test():
+    names = {path.stem for path in EXAMPLES.glob("*.py")}
+    assert all(f"def test_{name}" in Path(__file__).read_text() for name in names)
+
+
+def test_droplet_on_plane():
+    rows = load("droplet_on_plane").main(angles=(60.0, 150.0, 175.0))
+    assert max(row["error"] for row in rows) < 1e-6
+    assert np.all(np.diff([row["height"] for row in rows]) > 0)
+    assert np.all(np.diff([row["contact_radius"] for row in rows]) < 0)

@@ -1,0 +1,219 @@
+"""The scene file's contract: what is refused, and how it is said (I1-I5, I8, I12, I13, X5, X7)."""
+
+import copy
+import json
+import time
+
+import numpy as np
+import pytest
+from helpers import UNIT_VOLUME
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import iga_membrane as iga
+from iga_membrane.scenes.scene_file import KEYS
+
+GOOD = {
+    "scene": "sessile_droplet",
+    "liquid": {"surface_tension": 1.0, "density": 1.0, "volume": UNIT_VOLUME},
+    "gravity": {"acceleration": 1.0, "direction": [0, 0, -1]},
+    "substrate": {"kind": "plane", "contact_angle": 150.0},
+    "droplet": {"hold": "none"},
+    "discretization": {"space": "bspline", "degree": 3, "elements": 8, "model": "eighth"},
+    "solver": {"max_cpu_s": 60.0, "max_memory_gb": 1.0},
+}
+
+
+def changed(path, value):
+    data = copy.deepcopy(GOOD)
+    *tables, key = path.split(".")
+    place = data
+    for table in tables:
+        place = place.setdefault(table, {})
+    place[key] = value
+    return data
+
+
+def refusal(data):
+    start = time.perf_counter()
+    with pytest.raises(iga.SceneError) as caught:
+        iga.read_scene(data)
+    assert time.perf_counter() - start < 0.5
+    return str(caught.value)
+
+
+def test_the_good_scene_is_read():
+    file = iga.read_scene(GOOD)
+    assert file.scene.kind == "sessile_droplet"
+    assert file.solver == {"max_cpu_s": 60.0, "max_memory_gb": 1.0}
+    assert file.scene.description["substrate"]["contact_angle"] == 150.0
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        ("liquid.volume", 0.0, "volume must be > 0"),
+        ("liquid.volume", -1e-9, "liquid.volume = -1e-09: volume must be > 0"),
+        ("liquid.surface_tension", 0.0, "surface_tension must be > 0"),
+        ("liquid.density", -1.0, "density must be >= 0"),
+        ("gravity.acceleration", -9.81, "acceleration must be >= 0"),
+        ("gravity.direction", [0, 0, 0], "must not be zero"),
+        ("gravity.direction", [0, 1], "three numbers"),
+        ("substrate.contact_angle", 0.0, "contact_angle must be > 0 and <= 180"),
+        ("substrate.contact_angle", 200.0, "substrate.contact_angle = 200.0"),
+        ("substrate.kind", "plain", 'did you mean "plane"'),
+        ("discretization.degree", 1, "C1 needed"),
+        ("discretization.degree", 5, "from 1 to 4"),
+        ("discretization.degree", 3.0, "whole number"),
+        ("discretization.elements", 2, "from 3"),
+        ("discretization.space", "splines", "must be one of"),
+        ("discretization.model", "third", "must be one of"),
+        ("solver.max_cpu_s", 0.0, "max_cpu_s must be > 0"),
+        ("solver.penalty", -1.0, "penalty must be > 0"),
+        ("solver.stabilization", -0.1, "stabilization must be > 0"),
+        ("droplet.hold", "yx", "must be one of"),
+        ("scene", "sesile_droplet", 'did you mean "sessile_droplet"'),
+        ("schema", 2, "schema 1"),
+        ("particle", {"radius": 1.0}, "list of tables"),
+    ],
+)
+def test_values_out_of_range_are_named(path, value, said):
+    message = refusal(changed(path, value))
+    assert said in message
+    assert path.split(".")[-1] in message
+
+
+@pytest.mark.parametrize(
+    "text", ["72 mN/m", "72", "1 uL", "1 banana", "__import__('os').system('true')"]
+)
+@pytest.mark.parametrize(
+    "path", ["liquid.surface_tension", "liquid.volume", "gravity.acceleration"]
+)
+def test_text_is_never_read_as_a_number(path, text):
+    message = refusal(changed(path, text))
+    assert path in message
+    assert "text is not read as a number" in message
+
+
+NUMBERS = [
+    f"{table}.{key}"
+    for table in ("liquid", "gravity", "substrate", "sheet", "cell", "rings", "discretization",
+                  "solver")
+    for key in KEYS[table]
+    if key not in ("kind", "arrangement", "boundary", "shape", "space", "model", "motion", "contact",
+                   "contact_line", "start", "liquid_weight")
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("path", NUMBERS)
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
+def test_numbers_that_are_not_finite_are_refused(path, value):
+    assert path.split(".")[-1] in refusal(changed(path, value))
+
+
+@pytest.mark.parametrize("path", NUMBERS)
+@pytest.mark.parametrize("value", ["1", True, None, {}, 1e400, [[]]])
+def test_wrong_types_are_refused(path, value):
+    assert path.split(".")[-1] in refusal(changed(path, value))
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("substrate.tehta", "substrate.tehta: unknown key"),
+        ("substrate.contact_angel", 'did you mean "contact_angle"'),
+        ("likwid", "likwid: unknown key"),
+        ("liquid.volumen", 'did you mean "volume"'),
+    ],
+)
+def test_misspelt_keys_are_refused(path, said):
+    assert said in refusal(changed(path, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        ("substrate.kind", "sphere", 'substrate.kind = "sphere": not available yet'),
+        ("scene", "liquid_sheet", 'scene = "liquid_sheet": not available yet'),
+        ("particle", [{"radius": 1.0}], "[[particle]]: not available yet"),
+        ("solver.contact", "penalty", "not available yet"),
+        ("solver.contact_line", "trimmed", "not available yet"),
+        ("solver.start", "flat", "not available yet"),
+        ("substrate.base", -0.1, "a plane has no such field"),
+        ("sheet", {"size": 5.0}, "does not belong"),
+    ],
+)
+def test_what_is_not_built_or_does_not_belong_is_refused_by_name(path, value, said):
+    assert said in refusal(changed(path, value))
+
+
+def test_missing_fields_are_named():
+    for field in ("liquid.volume", "substrate.contact_angle", "scene"):
+        data = copy.deepcopy(GOOD)
+        *tables, key = field.split(".")
+        place = data[tables[0]] if tables else data
+        del place[key]
+        assert f"{field}: missing" in refusal(data)
+
+
+def test_a_model_with_a_mirror_that_gravity_lacks_is_refused():
+    data = changed("gravity.direction", [0.1, 0, -1])
+    message = refusal(data)
+    assert 'discretization.model = "eighth"' in message
+    assert '"half"' in message
+    del data["discretization"]["model"]
+    assert iga.read_scene(data).scene.sector.model == "half"
+
+
+def test_an_angle_in_radians_gets_a_hint_not_an_error():
+    scene = iga.read_scene(changed("substrate.contact_angle", 2.6)).scene
+    assert "degrees?" in scene.warnings[0]
+
+
+def test_a_start_below_the_plane_is_refused_with_depth_and_lift():
+    plane = iga.Plane(contact_angle=120)
+    start = iga.sessile_droplet(plane, volume=1.0).surface.transformed(shift=[0, 0, -0.25])
+    with pytest.raises(iga.SceneError, match=r"up to 0\.2.* below .*solid 0.*lift it by"):
+        iga.sessile_droplet(plane, volume=1.0, start=start)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("scene.json", '{"scene": "a", "scene": "b"}', "scene: given 2 times"),
+        ("scene.json", '{"liquid": {"volume": NaN}, "scene": "sessile_droplet"}', "liquid.volume"),
+        ("scene.json", "[" * 100_000, "not a scene file"),
+        ("scene.toml", "scene = ", "not a scene file"),
+        ("scene.toml", 'scene = "sessile_droplet"\nscene = "b"', "not a scene file"),
+    ],
+)
+def test_bad_files_are_refused(tmp_path, name, text, said):
+    path = tmp_path / name
+    path.write_text(text)
+    with pytest.raises(iga.SceneError, match=said):
+        iga.load_scene(path)
+
+
+def test_files_that_cannot_be_read_are_named(tmp_path):
+    with pytest.raises(iga.SceneError, match="missing.toml"):
+        iga.load_scene(tmp_path / "missing.toml")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(iga.SceneError, match="cannot be read"):
+        iga.load_scene(tmp_path / "binary.toml")
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(st.integers(0, 10**9))
+def test_mutated_files_give_typed_errors_or_valid_scenes(seed):
+    rng = np.random.default_rng(seed)
+    text = bytearray(json.dumps(GOOD).encode())
+    for _ in range(rng.integers(1, 4)):
+        text[rng.integers(len(text))] = rng.integers(32, 127)
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError:
+        return
+    try:
+        iga.read_scene(data)
+    except iga.SceneError:
+        return

@@ -1,0 +1,121 @@
+"""Exit codes, files and their order: nothing is computed before it can be written (S4)."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import iga_membrane as iga
+from iga_membrane.cli import main
+
+SCENE = """
+scene = "sessile_droplet"
+[liquid]
+volume = 4.1887902047863905
+[gravity]
+acceleration = 1.0
+[substrate]
+contact_angle = 150.0
+[discretization]
+degree = 3
+elements = 8
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def test_a_solved_scene_writes_result_state_and_surface(scene, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["solve", str(scene), "--out", str(out), "--vtu"]) == 0
+    assert "CONVERGED_STABLE" in capsys.readouterr().out
+    result = json.loads((out / "result.json").read_text())
+    assert result["schema"] == 1
+    assert result["success"] is True
+    assert result["stability_scope"] == "eighth"
+    assert result["index"] == 0
+    assert result["lambda_min"] > 0
+    assert set(result["cpu_seconds"]) == {
+        "import", "compile", "assembly", "linear", "contact", "solve", "total"
+    }  # fmt: skip
+    assert result["scene"]["discretization"]["elements"] == 8
+    with np.load(out / "state.npz", allow_pickle=False) as state:
+        assert json.loads(state["header"].tobytes())["status"] == "CONVERGED_STABLE"
+        assert state["points"].shape[1] == 3
+    assert sorted(p.name for p in out.iterdir()) == ["result.json", "state.npz", "surface.vtu"]
+
+
+def test_a_bad_scene_exits_2_and_writes_nothing(scene, tmp_path, capsys):
+    scene.write_text(SCENE.replace("150.0", "250.0"))
+    assert main(["solve", str(scene), "--out", str(tmp_path / "out")]) == 2
+    assert "substrate.contact_angle = 250.0" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_failed_solve_exits_3_and_still_writes_its_result(scene, tmp_path):
+    scene.write_text(
+        SCENE.replace("acceleration = 1.0", "acceleration = 1.0\ndirection = [1, 0, -1]")
+    )
+    assert main(["solve", str(scene), "--out", str(tmp_path / "out")]) == 3
+    result = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert result["status"] == "NO_EQUILIBRIUM"
+    assert result["success"] is False
+    assert result["contact"]["hold_force"][0] == pytest.approx(-4.18879 / np.sqrt(2), rel=1e-4)
+
+
+def test_an_output_that_cannot_be_written_exits_4_before_computing(scene, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setattr("iga_membrane.cli.solve", lambda *a, **k: pytest.fail("computed"))
+    assert main(["solve", str(scene), "--out", str(tmp_path / "file" / "out")]) == 4
+
+
+def test_an_interrupt_exits_130(scene, tmp_path, monkeypatch):
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("iga_membrane.cli.solve", interrupted)
+    assert main(["solve", str(scene), "--out", str(tmp_path / "out")]) == 130
+
+
+def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
+    solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
+    path = tmp_path / "result.json"
+    path.write_text("old")
+    monkeypatch.setattr(os, "fsync", lambda handle: (_ for _ in ()).throw(OSError(28, "full")))
+    with pytest.raises(iga.OutputError, match=r"result\.json"):
+        solution.save(path)
+    assert path.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["result.json"]
+
+
+def test_an_unknown_ending_is_refused(tmp_path):
+    solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
+    with pytest.raises(iga.OutputError, match="ending must be"):
+        solution.save(tmp_path / "drop.stl")
+
+
+def test_the_module_runs_as_a_process_in_any_locale(scene, tmp_path):
+    run = subprocess.run(
+        [sys.executable, "-m", "iga_membrane", "solve", str(scene), "--out", str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"LC_ALL": "C"},
+    )
+    assert run.returncode == 0, run.stderr
+    assert "height" in run.stdout
+
+
+def test_two_runs_give_the_same_bits(scene, tmp_path):
+    found = []
+    for name in ("one", "two"):
+        assert main(["solve", str(scene), "--out", str(tmp_path / name)]) == 0
+        found.append(json.loads((tmp_path / name / "result.json").read_text())["measures"])
+    assert found[0] == found[1]

@@ -1,0 +1,68 @@
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from helpers import droplet
+
+import iga_membrane as iga
+from iga_membrane.view import picture
+from iga_membrane.view.vtu import bezier_net, grid
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return iga.solve(droplet(150, 1.0))
+
+
+def test_bezier_cells_lie_on_the_surface():
+    surface = iga.cap(1.0, 120.0)
+    cells = bezier_net(surface)
+    corners = cells[:, [0, 0, -1, -1], [0, -1, 0, -1]]
+    radius = np.linalg.norm(corners[..., :3] / corners[..., 3:] + [0, 0, -0.5], axis=-1)
+    assert radius == pytest.approx(1.0, abs=1e-12)
+
+
+def test_vtu_round_trip_keeps_degrees_weights_and_shape(solution, tmp_path):
+    pv = pytest.importorskip("pyvista")
+    path = tmp_path / "drop.vtu"
+    solution.save(path)
+    back = pv.read(path)
+    assert back.n_cells == solution.surface.space.elements
+    assert back.cell_data["HigherOrderDegrees"][0].tolist() == [4, 4, 0]
+    assert back.point_data["RationalWeights"] == pytest.approx(1.0)
+    sphere = grid(iga.sphere(1.0))
+    assert sphere.point_data["RationalWeights"].min() < 0.75
+    fine = sphere.extract_surface(nonlinear_subdivision=4, algorithm=None)
+    assert np.linalg.norm(fine.points, axis=1) == pytest.approx(1.0, abs=1e-6)
+    assert fine.area == pytest.approx(4 * np.pi, rel=5e-3)
+
+
+def test_picture_shows_a_coloured_drop_on_its_plane(solution, tmp_path):
+    if not picture.can_draw():
+        pytest.skip(f"no rendering here: {picture.REMEDY}")
+    from matplotlib.image import imread
+
+    path = tmp_path / "drop.png"
+    solution.plot(path, size=(400, 300), resolution=65)
+    image = imread(path)[..., :3]
+    assert image.shape == (300, 400, 3)
+    middle = image[100:200, 150:250].reshape(-1, 3)
+    assert middle.std(axis=0).max() > 0.02, "the drop has one flat colour"
+    assert not np.allclose(middle.mean(axis=0), image[5, 5], atol=0.05), "the frame is empty"
+
+
+def test_a_machine_that_cannot_draw_is_told_what_to_install(solution, tmp_path, monkeypatch):
+    monkeypatch.setattr(picture, "can_draw", lambda: False)
+    with pytest.raises(RuntimeError, match="libegl1"):
+        solution.plot(tmp_path / "drop.png")
+
+
+def test_solving_loads_no_plotter():
+    code = (
+        "import sys, iga_membrane as iga; "
+        "iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0)); "
+        "print(sorted({'vtk', 'pyvista', 'matplotlib', 'numba', 'geomdl'} & set(sys.modules)))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
