@@ -36,6 +36,17 @@ class Table:
         """(elements, 3 points, local): values, d1 and d2 under each other, for one product."""
         return np.concatenate([self.values, self.d1, self.d2], axis=1)
 
+    def part(self, elements: slice) -> Table:
+        """First-order table of some of the elements."""
+        return Table(
+            self.functions[elements],
+            self.values[elements],
+            self.d1[elements],
+            self.d2[elements],
+            self.weights[elements],
+            self.parameters[elements],
+        )
+
     def derivatives(self, coefficients: Array) -> tuple[Array, Array, Array]:
         """A field and its two parametric derivatives: three arrays (elements, points, c)."""
         field = self.stacked @ coefficients[self.functions]

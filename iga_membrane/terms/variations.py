@@ -17,6 +17,8 @@ from ..arrays import Array
 from ..splines import Table
 from .term import BodyDensity
 
+CACHED = 16_000
+"""Numbers per array that numpy works on at a time: half as long a Hessian as with whole arrays."""
 COMPILED_FROM = 4000
 """Elements from which the compiled loops repay about one second of start-up (docs/results)."""
 
@@ -35,6 +37,12 @@ class ElementPoints:
     a2: Array
     c: Array
     area: Array
+
+    def part(self, elements: slice) -> ElementPoints:
+        """Some of the elements."""
+        return ElementPoints(
+            *(getattr(self, name)[elements] for name in ("x", "a1", "a2", "c", "area"))
+        )
 
 
 def element_points(table: Table, points: Array) -> ElementPoints:
@@ -131,6 +139,20 @@ def hessian(
             flux(body, at.x), flux_gradient(body, at.x), np.array(body.gradient), directions,
         ))  # fmt: skip
         return np.asarray(kernels.hessian(*arrays, float(tension)))
+    elements, points, local = table.values.shape
+    chunk = max(1, CACHED // (points * local))
+    return np.concatenate(
+        [
+            _hessian(table.part(some), at.part(some), tension, body, directions[some])
+            for some in (slice(i, i + chunk) for i in range(0, elements, chunk))
+        ]
+    )
+
+
+def _hessian(
+    table: Table, at: ElementPoints, tension: float, body: BodyDensity, directions: Array
+) -> Array:
+    """The same by numpy, for as many elements as fit into the cache."""
     n = at.c / at.area[..., None]
     w = table.weights
     conjugate = tension * n

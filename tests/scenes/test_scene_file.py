@@ -100,8 +100,8 @@ NUMBERS = [
     for table in ("liquid", "gravity", "substrate", "sheet", "cell", "rings", "discretization",
                   "solver")
     for key in KEYS[table]
-    if key not in ("kind", "arrangement", "boundary", "shape", "space", "model", "motion", "contact",
-                   "contact_line", "start", "liquid_weight")
+    if key not in ("kind", "arrangement", "boundary", "shape", "space", "model", "motion",
+                   "contact", "contact_line", "start", "liquid_weight")
 ]  # fmt: skip
 
 
@@ -141,6 +141,7 @@ def test_misspelt_keys_are_refused(path, said):
         ("solver.start", "flat", "not available yet"),
         ("substrate.base", -0.1, "a plane has no such field"),
         ("sheet", {"size": 5.0}, "does not belong"),
+        ("substrate.contact_angle", 180.0, "not available yet"),
     ],
 )
 def test_what_is_not_built_or_does_not_belong_is_refused_by_name(path, value, said):
@@ -195,7 +196,7 @@ def test_bad_files_are_refused(tmp_path, name, text, said):
 
 
 def test_files_that_cannot_be_read_are_named(tmp_path):
-    with pytest.raises(iga.SceneError, match="missing.toml"):
+    with pytest.raises(iga.SceneError, match=r"missing\.toml"):
         iga.load_scene(tmp_path / "missing.toml")
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(iga.SceneError, match="cannot be read"):
