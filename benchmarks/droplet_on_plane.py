@@ -91,11 +91,11 @@ def main() -> None:
         "# A droplet on a plane: error against CPU seconds",
         "",
         "Made by `OMP_NUM_THREADS=1 python benchmarks/droplet_on_plane.py` on "
-        f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, one thread. Volume 4 pi / 3, "
-        "surface tension 1. Errors are relative, against the axisymmetric reference "
-        "(`iga_membrane/reference`, itself right to 1e-11). CPU seconds are the median of five "
-        "solves: everything between the scene and the result, stability and audit included, "
-        "without imports.",
+        f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
+        "one thread. Volume 4 pi / 3, surface tension 1. Errors are relative, against the "
+        "axisymmetric reference (`iga_membrane/reference`, itself right to 1e-11). CPU seconds are "
+        "the median of five solves: everything between the scene and the result, stability and "
+        "audit included, without imports.",
         "",
         "## The whole family at the default discretization",
         "",
