@@ -12,11 +12,11 @@ __version__ = "0.1.0"
 
 _HOME = {
     "errors": ("GeometryError", "OutputError", "SceneError", "SolveError"),
-    "splines": ("Space", "Table", "bspline_basis", "close_pole", "lagrange_basis", "line_basis",
+    "splines": ("Grading", "Space", "Table", "bspline_basis", "close_pole", "lagrange_basis", "line_basis",
                 "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
     "surface.surface": ("Surface",),
     "surface.kinematics": ("Kinematics",),
-    "surface.shapes": ("cap", "cylinder", "disc", "sheet", "sphere"),
+    "surface.shapes": ("axisymmetric", "cap", "cylinder", "disc", "drop_space", "sheet", "sphere"),
     "surface.refine": ("elevated", "refined"),
     "surface.exchange": ("from_geomdl", "to_geomdl"),
     "surface.supports": ("Fixed", "Joint", "Sector", "Sliding", "Symmetry"),

@@ -44,6 +44,10 @@ def _solve(given: argparse.Namespace) -> int:
     file = load_scene(given.scene)
     folder = Path(given.out)
     check_folder(folder)
+    if given.png:
+        from .view.picture import check_drawing
+
+        check_drawing()
     with _progress() as report:
         solution = solve(
             file.scene, replace(SolverOptions(), **file.solver), on_fail="return", report=report

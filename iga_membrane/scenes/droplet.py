@@ -104,7 +104,7 @@ def sessile_droplet(
         grading=grading,
         ramp=ramp if bond.any() else None,
         substrate=substrate,
-        hold=hold,
+        hold="" if hold == "none" else hold,
         kind="sessile_droplet",
         description=_describe(substrate, volume, liquid, acceleration, mesh, sector, hold),
         warnings=_hints(angle),
@@ -134,7 +134,7 @@ def _sector(mesh: Discretization, bond: Array) -> Sector:
 
 def _grading(contact_angle: float, bond: float, length: float) -> Grading:
     """Shorter steps near the rim: for the capillary length, and for a foot nearly tangent to the
-    plane. The constants balance the errors of height and rim (docs/results)."""
+    plane. The constants balance the errors of height and rim over the whole family."""
     if bond == 0:
         return Grading()  # a circular arc has no layer
     first = min(1.0, 3.5 / (np.sqrt(bond) * length))
@@ -185,6 +185,10 @@ def _describe(
 ) -> dict[str, Any]:
     """The scene by the names of the scene file."""
     size = float(np.linalg.norm(acceleration))
+    standard = Plane(substrate.contact_angle)
+    placed = {} if substrate == standard else {
+        "point": list(substrate.point), "normal": list(substrate.normal)
+    }  # fmt: skip
     direction = acceleration / size if size else np.array([0.0, 0.0, -1.0])
     return {
         "scene": "sessile_droplet",
@@ -194,7 +198,7 @@ def _describe(
             "volume": volume,
         },
         "gravity": {"acceleration": size, "direction": [float(d) for d in direction]},
-        "substrate": {"kind": "plane", "contact_angle": substrate.contact_angle},
+        "substrate": {"kind": "plane", "contact_angle": substrate.contact_angle} | placed,
         "droplet": {"hold": hold},
         "discretization": {
             "space": mesh.space,

@@ -73,7 +73,7 @@ class Assembly:
     ----------
     scene : its surface's space and supports fix the numbering; its start is not used.
     points : Gauss points per direction; if omitted ``degree + 1``, but ``degree`` round a smooth
-        ring, where the functions are splines on equal knots (docs/results).
+        ring, where the functions are splines on equal knots (docs/results/choices.md).
     """
 
     def __init__(self, scene: Scene, points: int | None = None) -> None:

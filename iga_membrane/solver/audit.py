@@ -1,8 +1,7 @@
 """Independent check of a state before it may be called a success.
 
 Nothing assembled by the solver is reused: doubled quadrature, the geometry of
-:mod:`iga_membrane.surface.kinematics`, the weak form with dual tangents, and volume as the flux of
-``x / 3`` instead of ``z e_z``.
+:mod:`iga_membrane.surface.kinematics`, and the weak form with dual tangents.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from ..surface.shapes import rational_matrix
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import BodyDensity, PlaneContactLine, SurfaceTension, Volume
-from .measures import ContactLine, contact_line
+from .measures import contact_line, vertical_forces
 
 
 @dataclass(frozen=True)
@@ -84,21 +83,28 @@ def audit(
         pull = edge.values.transpose(0, 2, 1) @ (term.strength * edge.weights[..., None] * outward)
         _scatter(total, absolute, motion, edge.functions, pull)
     residual = float(np.linalg.norm(total[:-1]) / np.linalg.norm(absolute[:-1]))
-    inside = sector.copies * float(
-        (np.einsum("eqi,eqi->eq", k.position, k.normal) * area).sum() / 3.0
-    )
+    inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
     target = next((t.value for t in terms if isinstance(t, Volume)), None)
     missing = abs(inside / target - 1.0) if target else 0.0
     if not lines:
         return Audit(residual, missing)
     line = contact_line(surface, lines[0].edge, 2 * points[0])
-    theta = np.radians(lines[0].contact_angle)
-    force_defect, line_defect = _balance(line, body, tension, theta, inside)
+    forces = vertical_forces(line, body, tension, lines[0].contact_angle)
+    weight = body.gradient[2] * inside
+    scale = abs(forces.push) + abs(forces.line) + abs(weight)
     cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum())
     depth = 0.0
     if any(isinstance(s, Sliding) for s in scene.supports):
         depth = max(0.0, -_lowest(surface, points, sector))
-    return Audit(residual, missing, force_defect, line_defect, cosine - float(np.cos(theta)), depth)
+    young = float(np.cos(np.radians(lines[0].contact_angle)))
+    return Audit(
+        residual,
+        missing,
+        force=abs(forces.push - forces.line - weight) / scale,
+        line=abs(forces.push - forces.measured - weight) / scale,
+        angle=cosine - young,
+        penetration=depth,
+    )
 
 
 def _density(body: BodyDensity, x: Array) -> Array:
@@ -110,24 +116,6 @@ def _scatter(total: Array, absolute: Array, motion: Motion, functions: Index, fo
     where = motion.unknowns[functions]
     np.add.at(total, where, work)
     np.add.at(absolute, where, np.abs(work))
-
-
-def _balance(
-    line: ContactLine, body: BodyDensity, tension: float, theta: float, inside: float
-) -> tuple[float, float]:
-    """Vertical balance of the drop, with Young's and with the measured angle."""
-    # wetted area and its first moments by Green's theorem, counterclockwise
-    x, y = line.position[:, 0], line.position[:, 1]
-    nx, ny = line.tangent[:, 1] * line.arc, -line.tangent[:, 0] * line.arc
-    wet = float(0.5 * (x @ nx + y @ ny))
-    mx, my = float(0.5 * (x * x) @ nx), float(0.5 * (y * y) @ ny)
-    gx, gy, gz = body.gradient
-    push = -(body.constant * wet + gx * mx + gy * my)
-    weight = gz * inside
-    young = tension * np.sin(theta) * float(line.arc.sum())
-    measured = -tension * float(line.conormal[:, 2] @ line.arc)
-    scale = abs(push) + abs(young) + abs(weight)
-    return abs(push - young - weight) / scale, abs(push - measured - weight) / scale
 
 
 def _lowest(surface: Surface, points: tuple[int, int], sector: Sector) -> float:

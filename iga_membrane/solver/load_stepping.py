@@ -28,9 +28,17 @@ class LoadStep:
 
 @dataclass(eq=False)
 class LoadPath:
-    """End of load stepping: the Newton result at the last load tried and every attempt."""
+    """End of load stepping.
+
+    Attributes
+    ----------
+    result : at the last good load, with the status of the last attempt.
+    scene : the scene at that load.
+    steps : every attempt.
+    """
 
     result: NewtonResult
+    scene: Scene
     steps: list[LoadStep] = field(default_factory=list)
     last_good: float = 0.0
 
@@ -53,7 +61,7 @@ def load_stepping(
     scene = ramp(0.0)
     assembly.load(scene)
     result = newton(assembly, scene.local_surface(), None, scene.grading, options)
-    path = LoadPath(result, [LoadStep(0.0, len(result.iterations), result.status)])
+    path = LoadPath(result, scene, [LoadStep(0.0, len(result.iterations), result.status)])
     load, step = 0.0, 0.25
     surface, multipliers = result.surface, result.multipliers
     while result.status is None and load < 1.0:
@@ -64,23 +72,19 @@ def load_stepping(
         path.steps.append(LoadStep(target, len(result.iterations), result.status))
         if result.status is None and result.index <= 0:
             load, surface, multipliers = target, result.surface, result.multipliers
-            path.result, path.last_good = result, load
+            path.result, path.scene, path.last_good = result, scene, load
             report(load)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
             continue
-        if result.status is Status.INTERRUPTED:
-            path.result = result
-            return path
         step *= 0.5
-        if step < smallest:
+        interrupted = result.status is Status.INTERRUPTED
+        if interrupted or step < smallest:
             reason = result.message or f"{result.index} negative eigenvalues"
-            result.surface, result.multipliers = surface, multipliers
-            result.status = Status.STALLED
-            result.message = (
-                f"load stepping stopped at {load:.4g} of the load, its step below {smallest:g} "
+            path.result.status = Status.INTERRUPTED if interrupted else Status.STALLED
+            path.result.message = (
+                f"load stepping stopped at {load:.4g} of the load with steps of {2 * step:.2g} "
                 f"({reason})"
             )
-            path.result = result
             return path
         result.status = None
     return path

@@ -37,7 +37,7 @@ class ContactLine:
 
 
 def contact_line(surface: Surface, edge: str = "xi2=0", points: int | None = None) -> ContactLine:
-    """Line geometry from exact spline tangents (paper eqs 33-34), on the plane z = 0."""
+    """Line geometry from exact spline tangents (paper eq. 33), on the plane z = 0."""
     space = surface.space
     along, end = EDGES[edge]
     basis = space.bases[along]
@@ -59,6 +59,38 @@ def contact_line(surface: Surface, edge: str = "xi2=0", points: int | None = Non
     return ContactLine(k.position, tangent, conormal, angle, weights)
 
 
+@dataclass(frozen=True)
+class VerticalForces:
+    """What acts on the wetted part of the plane z = 0, positive downwards (dimensionless).
+
+    Attributes
+    ----------
+    wet_area : inside the line.
+    push : of the pressure on it.
+    line : pull of the membrane upwards with Young's angle; measured : with the spline's tangents.
+    """
+
+    wet_area: float
+    push: float
+    line: float
+    measured: float
+
+
+def vertical_forces(
+    line: ContactLine, body: BodyDensity, tension: float, contact_angle: float
+) -> VerticalForces:
+    """Forces on the wetted plane from the line alone, by Green's theorem (counterclockwise)."""
+    x, y = line.position[:, 0], line.position[:, 1]
+    nx, ny = line.tangent[:, 1] * line.arc, -line.tangent[:, 0] * line.arc
+    wet = float(0.5 * (x @ nx + y @ ny))
+    mx, my = float(0.5 * (x * x) @ nx), float(0.5 * (y * y) @ ny)
+    gx, gy, _ = body.gradient
+    push = -(body.constant * wet + gx * mx + gy * my)
+    young = tension * np.sin(np.radians(contact_angle)) * float(line.arc.sum())
+    measured = -tension * float(line.conormal[:, 2] @ line.arc)
+    return VerticalForces(wet, push, young, measured)
+
+
 def measures(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> dict[str, float]:
@@ -67,6 +99,10 @@ def measures(
     Parameters
     ----------
     surface : in the scene's scale.
+
+    Notes
+    -----
+    ``pressure`` is that at the origin of the scene's frame: for a droplet a point of the plane.
     """
     scale = scene.units
     values = energies(scene, assembly, surface)

@@ -131,7 +131,7 @@ def _iterate(
 ) -> None:
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
-    flee = False
+    flee, approached = False, None
     for _ in range(options.max_iterations):
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
@@ -140,13 +140,14 @@ def _iterate(
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
         if not np.isfinite(residual):
             raise _Stop(Status.NONFINITE, "the residual is not finite")
-        flee = flee or (result.best is not None and residual > 2.0 * result.best[0] > 0)
+        flee = flee or (approached is not None and residual > approached)
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
         before = process_time()
         direction = _direction(system, plain=residual <= NEAR and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
+        approached = residual if direction.index > 0 and not direction.shift else None
         displacement = motion.displacement(direction.step)
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
         if not np.isfinite(size):

@@ -16,8 +16,8 @@ class SolverOptions:
     tolerance : largest displacement of the last Newton step over the scene's length.
     max_iterations : Newton iterations at one load.
     min_load_step : load stepping stops below this part of the load.
-    quadrature : Gauss points per direction; ``degree`` for splines, ``degree + 1`` for Lagrange
-        spaces if None.
+    quadrature : Gauss points per direction; if None ``degree + 1``, but ``degree`` (at least 3)
+        round a smooth ring.
     max_cpu_s : CPU seconds after which the solve stops, INTERRUPTED.
     max_memory_gb : a scene whose matrices would need more is refused.
     audit : whether to check the result on an independent path; without it, UNVERIFIED.

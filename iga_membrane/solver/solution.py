@@ -35,6 +35,7 @@ class Solution:
     index : negative eigenvalues; lambda_min : smallest one (tension over squared length).
     audit : relative defects found by the independent check, or None.
     hold_force : (3,) total force that holds the centroid.
+    contact : wetted area, support force, penetration, by the names of the result file.
     iterations : the Newton iterations; load_steps : the loads tried.
     cpu_seconds : by what they were spent on.
     """
@@ -50,6 +51,7 @@ class Solution:
     lambda_min: float | None
     audit: Audit | None = field(repr=False)
     hold_force: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), repr=False)
+    contact: Mapping[str, float] = field(default_factory=dict, repr=False)
     unknowns: int = 0
     iterations: Sequence[Iteration] = field(default=(), repr=False)
     load_steps: Sequence[LoadStep] = field(default=(), repr=False)
@@ -139,7 +141,7 @@ class Solution:
         return plot(self, path, **options)
 
     def save(self, path: str | Path) -> None:
-        """Write the surface (.vtu), the result (.json) or the state (.npz)."""
+        """Write the surface (.vtu), a picture (.png), the result (.json) or the state (.npz)."""
         from ..view.export import save
 
         save(self, Path(path))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import process_time
 from typing import Literal
 
@@ -16,12 +16,12 @@ from ..scenes.scene import Scene
 from ..splines import Grading
 from ..surface.motion import Motion
 from ..surface.surface import Surface
-from ..terms import Centroid
+from ..terms import BodyDensity, Centroid, PlaneContactLine
 from .assembly import Assembly
 from .audit import Audit, audit
 from .linear import Bordered, SingularMatrix
 from .load_stepping import LoadStep, load_stepping
-from .measures import measures
+from .measures import contact_line, measures, vertical_forces
 from .newton import NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
 from .solution import Solution
@@ -86,24 +86,29 @@ def solve(
     """
     options = options or SolverOptions()
     started = process_time()
+    _check_memory(scene, options)
     assembly = Assembly(scene, options.quadrature)
-    _check_memory(assembly, options)
     settings = NewtonOptions(
         options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
     )
-    result, steps = _iterate(scene, assembly, settings, options, report)
-    assembly.load(scene)
-    solution = _conclude(scene, assembly, result, steps, options, started)
+    reached, result, steps = _iterate(scene, assembly, settings, options, report)
+    assembly.load(reached)
+    solution = _conclude(reached, assembly, result, steps, options, started)
+    solution = replace(solution, scene=scene)
     log.debug("%s: %s", solution.status.name, solution.message)
     if not solution.success and on_fail == "raise":
         raise SolveError(f"{solution.status.name}: {solution.message}", solution)
     return solution
 
 
-def _check_memory(assembly: Assembly, options: SolverOptions) -> None:
-    """Tables, blocks and factors, from counts; refuse before allocating the large ones."""
-    elements, points, local = assembly.table.values.shape
-    need = 8.0 * elements * (14.0 * points * local + 6.0 * local**2) + 4e3 * assembly.size
+def _check_memory(scene: Scene, options: SolverOptions) -> None:
+    """Tables, blocks and factors, from counts; refuse before allocating any."""
+    space = scene.surface.space
+    elements = space.elements / scene.sector.copies
+    local = space.functions.shape[1]
+    points = options.quadrature**2 if options.quadrature else local
+    need = 8.0 * elements * (14.0 * points * local + 6.0 * local**2)
+    need += 4e3 * space.count / scene.sector.copies
     if need > options.max_memory_gb * 1e9:
         raise SceneError(
             f"solver.max_memory_gb = {options.max_memory_gb:g}: this mesh needs about "
@@ -117,20 +122,24 @@ def _iterate(
     settings: NewtonOptions,
     options: SolverOptions,
     report: Callable[[float], None],
-) -> tuple[NewtonResult, list[LoadStep]]:
-    """Direct Newton, then load stepping where it failed or ended on a saddle."""
+) -> tuple[Scene, NewtonResult, list[LoadStep]]:
+    """Direct Newton, then load stepping where it failed or ended on a saddle.
+
+    Returns the scene of the load that was reached, which is not the one asked for if load stepping
+    stopped on its way.
+    """
     direct = newton(assembly, scene.local_surface(), None, _grading(scene), settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
     failed = direct.status is not None or direct.index > 0
     if not failed or scene.ramp is None or direct.status is Status.INTERRUPTED:
-        return direct, steps
+        return scene, direct, steps
     log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
     path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
     stepped = path.result
     stepped.linear_seconds += direct.linear_seconds
-    if stepped.status is None or path.last_good > 0:
-        return stepped, steps + path.steps
-    return direct, steps + path.steps
+    if stepped.status is None or (path.last_good > 0 and direct.status is not None):
+        return path.scene, stepped, steps + path.steps
+    return scene, direct, steps + path.steps
 
 
 def _grading(scene: Scene) -> Grading | None:
@@ -176,6 +185,7 @@ def _conclude(
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
         audit=checked,
         hold_force=hold,
+        contact=_contact(scene, surface, assembly.density(multipliers), checked),
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
         load_steps=tuple(steps),
@@ -219,8 +229,7 @@ def _judge(
     """Status of a converged state."""
     limit = TOLERANCE
     free = np.array(hold) @ scene.units.axes / scene.units.force
-    asked = "" if scene.hold == "none" else scene.hold
-    loose = [axis for axis in "xy" if axis not in asked]
+    loose = [axis for axis in "xy" if axis not in scene.hold]
     slipping = float(np.linalg.norm([free["xyz".index(axis)] for axis in loose]))
     if slipping > limit.balance * (1.0 + float(np.linalg.norm(free))):
         force = slipping * scene.units.force
@@ -269,6 +278,24 @@ def _defect(checked: Audit) -> tuple[Status, str] | None:
     return None
 
 
+def _contact(
+    scene: Scene, surface: Surface, body: BodyDensity, checked: Audit | None
+) -> dict[str, float]:
+    """Contact with the substrate, by the names of the result file."""
+    line = next((t for t in scene.local_terms() if isinstance(t, PlaneContactLine)), None)
+    if line is None:
+        return {}
+    scale = scene.units
+    forces = vertical_forces(contact_line(surface, line.edge), body, line.gamma, line.contact_angle)
+    return {
+        "wet_solids": 1,
+        "wet_area": forces.wet_area * scale.length**2,
+        "wet_fraction": 1.0,
+        "max_penetration": (checked.penetration if checked else 0.0) * scale.length,
+        "support_force": (forces.push - forces.line) * scale.force,
+    }
+
+
 def _named(
     assembly: Assembly, multipliers: Array, pressure: float, length: float
 ) -> dict[str, float]:
@@ -279,7 +306,7 @@ def _named(
 
 
 def _warnings(scene: Scene) -> tuple[str, ...]:
-    pinned = [t.axis for t in scene.terms if isinstance(t, Centroid)]
+    pinned = [t.axis for t in scene.terms if isinstance(t, Centroid) and t.axis not in scene.hold]
     texts = list(scene.warnings)
     if pinned:
         texts.append(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..checks import contact_angle, number
 from ..splines import EdgeTable
 from .term import LineTerm, Scale
 
@@ -30,6 +31,10 @@ class PlaneContactLine(LineTerm):
     contact_angle: float
     edge: str = "xi2=0"
     name = "wetting"
+
+    def __post_init__(self) -> None:
+        number("liquid.surface_tension", self.gamma, above=0.0)
+        contact_angle("substrate.contact_angle", self.contact_angle)
 
     @property
     def strength(self) -> float:

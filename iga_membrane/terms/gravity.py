@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..checks import number, vector
 from .term import BodyDensity, BodyTerm, Scale
 
 
@@ -23,6 +24,10 @@ class Gravity(BodyTerm):
     density_of_liquid: float
     acceleration: tuple[float, float, float]
     name = "gravity"
+
+    def __post_init__(self) -> None:
+        number("liquid.density", self.density_of_liquid, least=0.0)
+        vector("gravity", self.acceleration)
 
     def density(self) -> BodyDensity:
         x, y, z = (-self.density_of_liquid * g for g in self.acceleration)

@@ -10,7 +10,8 @@ from .term import AreaTerm, Scale
 
 @dataclass(frozen=True)
 class SurfaceTension(AreaTerm):
-    """``gamma`` times the area: the constant in-plane stress of paper eq. (17).
+    """``gamma`` times the area: the constant in-plane stress of the paper, between eqs (19)
+    and (20).
 
     Attributes
     ----------

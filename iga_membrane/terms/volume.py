@@ -19,6 +19,9 @@ class Pressure(BodyTerm):
     pressure: float
     name = "pressure"
 
+    def __post_init__(self) -> None:
+        number("pressure", self.pressure)
+
     def density(self) -> BodyDensity:
         return BodyDensity(-self.pressure)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ..errors import OutputError
 from ..solver.measures import contact_line
 
 if TYPE_CHECKING:
@@ -43,12 +44,12 @@ def plot(
 
     Raises
     ------
-    RuntimeError
+    OutputError
         If this machine cannot draw, with what to install.
     """
     pv = _pyvista()
-    if path is not None and not can_draw():
-        raise RuntimeError(f"pictures cannot be drawn on this machine: {REMEDY}")
+    if path is not None:
+        check_drawing()
     plotter = pv.Plotter(off_screen=path is not None, window_size=size)
     plotter.set_background("white")
     length = solution.scene.units.length
@@ -77,6 +78,17 @@ def plot(
     plotter.screenshot(str(path))
     plotter.close()
     return None
+
+
+def check_drawing() -> None:
+    """Prove that pictures can be drawn here.
+
+    Raises
+    ------
+    OutputError
+    """
+    if not can_draw():
+        raise OutputError(f"pictures cannot be drawn on this machine: {REMEDY}")
 
 
 @cache

@@ -17,7 +17,6 @@ from ..solver.solution import Solution
 def result(solution: Solution) -> dict[str, Any]:
     """The record of a solve by the names of the contract; None where a value is not finite."""
     verdict = solution.audit
-    hold = list(solution.hold_force)
     record = {
         "schema": SCHEMA,
         "version": __version__,
@@ -37,7 +36,12 @@ def result(solution: Solution) -> dict[str, Any]:
         "cpu_seconds": dict(solution.cpu_seconds),
         "measures": dict(solution.measures),
         "multipliers": dict(solution.multipliers),
-        "contact": {"hold_force": hold, "touches_base": False},
+        "contact": {
+            **solution.contact,
+            "asperities": [],
+            "touches_base": False,
+            "hold_force": list(solution.hold_force),
+        },
         "forces": [],
         "audit": vars(verdict) if verdict else None,
         "history": [vars(step) | {"status": step.status and step.status.name}

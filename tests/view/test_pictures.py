@@ -54,7 +54,7 @@ def test_picture_shows_a_coloured_drop_on_its_plane(solution, tmp_path):
 
 def test_a_machine_that_cannot_draw_is_told_what_to_install(solution, tmp_path, monkeypatch):
     monkeypatch.setattr(picture, "can_draw", lambda: False)
-    with pytest.raises(RuntimeError, match="libegl1"):
+    with pytest.raises(iga.OutputError, match="libegl1"):
         solution.plot(tmp_path / "drop.png")
 
 
