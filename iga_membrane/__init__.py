@@ -12,8 +12,8 @@ __version__ = "0.1.0"
 
 _HOME = {
     "errors": ("GeometryError", "OutputError", "SceneError", "SolveError"),
-    "splines": ("Grading", "Space", "Table", "bspline_basis", "close_pole", "lagrange_basis", "line_basis",
-                "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
+    "splines": ("Grading", "Space", "Table", "bspline_basis", "close_pole", "lagrange_basis",
+                "line_basis", "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
     "surface.surface": ("Surface",),
     "surface.kinematics": ("Kinematics",),
     "surface.shapes": ("axisymmetric", "cap", "cylinder", "disc", "drop_space", "sheet", "sphere"),

@@ -17,7 +17,8 @@ from scipy.sparse.linalg import splu
 from ..arrays import Array, Index
 
 DENSE_LIMIT = 600
-"""Up to this many unknowns a dense factorization costs less than a sparse one (docs/results/choices.md)."""
+"""Up to this many unknowns a dense factorization costs less than a sparse one
+(docs/results/choices.md)."""
 
 
 class SingularMatrix(ArithmeticError):

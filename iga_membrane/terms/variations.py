@@ -19,8 +19,9 @@ from .term import BodyDensity
 
 CACHED = 16_000
 """Numbers per array that numpy works on at a time: half as long a Hessian as with whole arrays."""
-COMPILED_FROM = 4000
-"""Elements from which the compiled loops repay about one second of start-up (docs/results/choices.md)."""
+COMPILED_FROM = 10_000
+"""Elements from which the compiled loops repay about one second of start-up
+(docs/results/choices.md)."""
 
 
 @dataclass(frozen=True, eq=False)
