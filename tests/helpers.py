@@ -38,7 +38,7 @@ def slopes(errors):
 
 def pinned_cap(opening, terms, model="full", *, rim=1.0, kind="bspline", degree=3, elements=8):
     """Spherical cap pinned on a circle; ``opening`` is its half angle in radians."""
-    from iga_membrane.surface.shapes import axisymmetric, drop_space
+    from iga_membrane.surface.ring import axisymmetric, drop_space
 
     radius = rim / np.sin(opening)
 

@@ -12,7 +12,7 @@ from ..checks import choice, number, vector
 from ..errors import SceneError
 from ..solids.plane import Plane
 from ..splines import Grading
-from ..surface.shapes import axisymmetric, drop_space
+from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import Centroid, Gravity, PlaneContactLine, Scale, SurfaceTension, Term, Volume

@@ -13,8 +13,8 @@ import numpy as np
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..surface.motion import Motion
+from ..surface.ring import rational_matrix
 from ..surface.sector import sector_elements
-from ..surface.shapes import rational_matrix
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import BodyDensity, PlaneContactLine, SurfaceTension, Volume

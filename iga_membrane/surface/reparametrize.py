@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..splines import Grading, net_of, points_of
 from ..splines.quadrature import gauss
-from .shapes import meridian_interpolation, rational_matrix
+from .ring import meridian_interpolation, rational_matrix
 from .surface import Surface
 
 

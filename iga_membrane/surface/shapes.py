@@ -1,24 +1,16 @@
-"""Surfaces to start from: exact quadrics (NURBS), flat sheets, axisymmetric drops."""
+"""Surfaces to start from: exact quadrics (NURBS) and flat sheets."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..errors import SceneError
 from ..splines import (
     Basis,
-    Space,
     bspline_basis,
-    close_pole,
     line_basis,
     open_knots,
-    points_of,
-    ring_angles,
-    ring_basis,
     tensor_space,
 )
 from .surface import Surface
@@ -101,110 +93,3 @@ def sheet(size: float, *, elements: int = 8, degree: int = 3, space: str = "bspl
     product = tensor_space(basis, basis)
     flat = size * (product.abscissae.reshape(-1, 2) - 0.5)
     return Surface(product, np.column_stack([flat, np.zeros(len(flat))]))
-
-
-def drop_space(
-    kind: str,
-    degree: int,
-    elements: int,
-    sectors: int = 8,
-    *,
-    angle: float | None = None,
-) -> Space:
-    """Ring patch closed by a pole: ``xi1`` is the azimuth, ``xi2`` runs from the rim (0) to the
-    pole (1).
-
-    Parameters
-    ----------
-    kind : "bspline", "nurbs" or "lagrange".
-    elements : along the meridian; the ring has twice as many, rounded up to whole sectors.
-    sectors : the ring's elements are a multiple of it.
-    angle : "nurbs": half opening angle (radians) of the cap that the weights make exact along the
-        meridian.
-    """
-    around = sectors * max(1, -(-2 * elements // sectors))
-    polynomial = "lagrange" if kind == "lagrange" else "bspline"
-    if polynomial == "bspline":
-        around = max(around, sectors * -(-(degree + 1) // sectors))
-    ring = ring_basis(polynomial, around, degree, 2.0 * np.pi)
-    meridian = line_basis(polynomial, elements, degree)
-    weights = None
-    if kind == "nurbs":
-        weights = np.broadcast_to(
-            arc_weights(meridian, angle or 0.5 * np.pi), (ring.count, meridian.count)
-        )
-    return close_pole(tensor_space(ring, meridian, weights))
-
-
-def arc_weights(meridian: Basis, angle: float) -> Array:
-    """(n,) weights of the arc of opening ``angle`` in a spline basis on [0, 1].
-
-    The denominator of the rational quadratic arc, ``1 - 2 (1 - cos(angle / 2)) t (1 - t)``, is a
-    polynomial of the spline space, so interpolation gives its coefficients.
-    """
-    t = meridian.abscissae
-    values = 1.0 - 2.0 * (1.0 - np.cos(0.5 * angle)) * t * (1.0 - t)
-    return np.linalg.solve(meridian.matrix(t), values)
-
-
-def meridian_interpolation(space: Space) -> tuple[Array, Array]:
-    """Interpolation along ``xi2`` that keeps a C1 pole.
-
-    Returns
-    -------
-    points : (n2,) where the values are taken; at a C1 pole the last but one is replaced by the
-        derivative at the pole.
-    matrix : (n2, n2) rows acting on the coefficients, in the same order.
-    """
-    basis = space.bases[1]
-    points = basis.abscissae.copy()
-    matrix = rational_matrix(space, points)
-    if space.pole == 1:
-        points[-2] = basis.breaks[-1]
-        matrix[-2] = rational_matrix(space, points[-2:-1], 1)[0]
-    return points, matrix
-
-
-def rational_matrix(space: Space, t: Array, derivative: int = 0) -> Array:
-    """Collocation matrix (len(t), n2) of the meridian basis, with the space's weights."""
-    basis = space.bases[1]
-    matrix = basis.matrix(t, derivative)
-    if space.weights is None:
-        return matrix
-    w = space.weights[0]
-    total = basis.matrix(t) @ w
-    if derivative == 0:
-        return np.asarray(matrix * w / total[:, None])
-    slope = matrix @ w
-    return np.asarray((matrix - basis.matrix(t) * (slope / total)[:, None]) * w / total[:, None])
-
-
-def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Array]]) -> Surface:
-    """Interpolate a surface of revolution in a ring space closed by a pole.
-
-    Parameters
-    ----------
-    profile : ``t -> (r, z, dr/dt)`` with the rim at t = 0 and the pole at t = 1, where ``r = 0``
-        and ``dz/dt = 0``.
-
-    Raises
-    ------
-    SceneError
-        If the space has no pole.
-    """
-    if space.pole is None:
-        raise SceneError("axisymmetric: a space closed by a pole is needed")
-    points, matrix = meridian_interpolation(space)
-    r, z, slope = (np.array(values, float) for values in profile(points))
-    if space.pole == 1:
-        r[-2], z[-2] = slope[-2], 0.0
-    r, z = np.linalg.solve(matrix, np.stack([r, z], axis=1)).T
-    ring = space.bases[0]
-    angles = ring_angles(space)
-    # Interpolation of cos on a uniform ring: its coefficients are cos at the abscissae over
-    # the amplitude with which the basis reproduces them.
-    amplitude = (ring.matrix(ring.abscissae[:1]) @ np.cos(angles - angles[0]))[0]
-    r = r / amplitude
-    net = np.stack([np.outer(np.cos(angles), r), np.outer(np.sin(angles), r),
-                    np.broadcast_to(z, (len(angles), len(z)))], axis=-1)  # fmt: skip
-    return Surface(space, points_of(space, net))

@@ -17,14 +17,14 @@ def test_pinned_cap_passes_its_pressure_maximum_under_volume_control():
         height = np.roots([np.pi / 6, 0, np.pi / 2, -volume])
         height = height[np.isreal(height)].real[0]
         pressure = 4 * height / (1 + height**2)
-        assert solution.multipliers["volume"] == pytest.approx(pressure, rel=1e-4)
+    XX
 
 
 def test_pinned_cap_under_pressure_is_solved_below_its_maximum_and_never_above():
     below = iga.solve(pinned_cap(1.0, [TENSION, iga.Pressure(1.9)], degree=4, elements=12))
     radius = 2 / 1.9
     exact = radius - np.sqrt(radius**2 - 1)
-    assert below.surface.net[0, -1, 2] == pytest.approx(exact, rel=1e-4)
+    assert below.surface.net[0, -1, 2] == pytest.approx(exact, rel=1e-6)
     above = iga.solve(pinned_cap(1.0, [TENSION, iga.Pressure(2.01)]), on_fail="return")
     assert not above.success
 

@@ -1,0 +1,131 @@
+"""Ring patches: an azimuth ``xi1`` and meridians ``xi2``, open or closed by a pole.
+
+Surfaces of revolution are interpolated along the meridian. Round the ring their circles are
+approximated so that the mean radius is exact: the ripple that is left averages to zero, and
+energies feel only its square.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..arrays import Array
+from ..splines import (
+    Basis,
+    Space,
+    close_pole,
+    line_basis,
+    points_of,
+    ring_angles,
+    ring_basis,
+    tensor_space,
+)
+from ..splines.quadrature import gauss
+from .surface import Surface
+
+
+def ring_space(
+    kind: str, degree: int, elements: int, sectors: int = 8, *, angle: float = 0.5 * np.pi
+) -> Space:
+    """Open ring patch.
+
+    Parameters
+    ----------
+    kind : "bspline", "nurbs" or "lagrange".
+    elements : along the meridian; the ring has twice as many, rounded up to whole sectors.
+    sectors : the ring's elements are a multiple of it.
+    angle : "nurbs": opening (radians) of the arc that the weights make exact along the meridian.
+    """
+    around = sectors * max(1, -(-2 * elements // sectors))
+    polynomial = "lagrange" if kind == "lagrange" else "bspline"
+    if polynomial == "bspline":
+        around = max(around, sectors * -(-(degree + 1) // sectors))
+    ring = ring_basis(polynomial, around, degree, 2.0 * np.pi)
+    meridian = line_basis(polynomial, elements, degree)
+    weights = None
+    if kind == "nurbs":
+        weights = np.broadcast_to(arc_weights(meridian, angle), (ring.count, meridian.count))
+    return tensor_space(ring, meridian, weights)
+
+
+def drop_space(
+    kind: str, degree: int, elements: int, sectors: int = 8, *, angle: float = 0.5 * np.pi
+) -> Space:
+    """Ring patch closed by a pole: ``xi2`` runs from the rim (0) to the pole (1).
+
+    Parameters are those of :func:`ring_space`.
+    """
+    return close_pole(ring_space(kind, degree, elements, sectors, angle=angle))
+
+
+def arc_weights(meridian: Basis, angle: float) -> Array:
+    """(n,) weights of the arc of opening ``angle`` in a spline basis on [0, 1].
+
+    The denominator of the rational quadratic arc, ``1 - 2 (1 - cos(angle / 2)) t (1 - t)``, is a
+    polynomial of the spline space, so interpolation gives its coefficients.
+    """
+    t = meridian.abscissae
+    values = 1.0 - 2.0 * (1.0 - np.cos(0.5 * angle)) * t * (1.0 - t)
+    return np.linalg.solve(meridian.matrix(t), values)
+
+
+def meridian_interpolation(space: Space) -> tuple[Array, Array]:
+    """Interpolation along ``xi2`` that keeps a C1 pole.
+
+    Returns
+    -------
+    points : (n2,) where the values are taken; at a C1 pole the last but one is replaced by the
+        derivative at the pole.
+    matrix : (n2, n2) rows acting on the coefficients, in the same order.
+    """
+    basis = space.bases[1]
+    points = basis.abscissae.copy()
+    matrix = rational_matrix(space, points)
+    if space.pole == 1:
+        points[-2] = basis.breaks[-1]
+        matrix[-2] = rational_matrix(space, points[-2:-1], 1)[0]
+    return points, matrix
+
+
+def rational_matrix(space: Space, t: Array, derivative: int = 0) -> Array:
+    """Collocation matrix (len(t), n2) of the meridian basis, with the space's weights."""
+    basis = space.bases[1]
+    matrix = basis.matrix(t, derivative)
+    if space.weights is None:
+        return matrix
+    w = space.weights[0]
+    total = basis.matrix(t) @ w
+    if derivative == 0:
+        return np.asarray(matrix * w / total[:, None])
+    slope = matrix @ w
+    return np.asarray((matrix - basis.matrix(t) * (slope / total)[:, None]) * w / total[:, None])
+
+
+def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Array]]) -> Surface:
+    """Interpolate a surface of revolution in a ring space.
+
+    Parameters
+    ----------
+    profile : ``t -> (r, z, dr/dt)`` along ``xi2``; at a pole (t = 1) ``r = 0`` and ``dz/dt = 0``.
+    """
+    points, matrix = meridian_interpolation(space)
+    r, z, slope = (np.array(values, float) for values in profile(points))
+    if space.pole == 1:
+        r[-2], z[-2] = slope[-2], 0.0
+    r, z = np.linalg.solve(matrix, np.stack([r, z], axis=1)).T
+    angles = ring_angles(space)
+    r = r / _circle_amplitude(space.bases[0], angles)
+    net = np.stack([np.outer(np.cos(angles), r), np.outer(np.sin(angles), r),
+                    np.broadcast_to(z, (len(angles), len(z)))], axis=-1)  # fmt: skip
+    return Surface(space, points_of(space, net))
+
+
+def _circle_amplitude(ring: Basis, angles: Array) -> float:
+    """Amplitude of the first harmonic of the curve with coefficients ``cos(angles)``."""
+    u, w = gauss(ring.degree + 4)
+    t = (ring.breaks[:-1, None] + ring.sizes[:, None] * u).ravel()
+    turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
+    weights = (ring.sizes[:, None] * w).ravel() * turn / np.pi
+    return float((ring.matrix(t) @ np.cos(angles)) * np.cos(turn * t) @ weights)
