@@ -17,7 +17,7 @@ def test_pinned_cap_passes_its_pressure_maximum_under_volume_control():
         height = np.roots([np.pi / 6, 0, np.pi / 2, -volume])
         height = height[np.isreal(height)].real[0]
         pressure = 4 * height / (1 + height**2)
-    XX
+        assert solution.multipliers["volume"] == pytest.approx(pressure, rel=1e-6)
 
 
 def test_pinned_cap_under_pressure_is_solved_below_its_maximum_and_never_above():
