@@ -28,6 +28,7 @@ _HOME = {
     "scenes.liquid": ("Discretization", "Liquid"),
     "scenes.scene": ("Scene",),
     "scenes.droplet": ("sessile_droplet",),
+    "scenes.film": ("film_between_rings",),
     "scenes.scene_file": ("load_scene", "read_scene"),
     "solver.options": ("SolverOptions",),
     "solver.status": ("Status",),

@@ -17,7 +17,7 @@ from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import Centroid, Gravity, PlaneContactLine, Scale, SurfaceTension, Term, Volume
 from .liquid import MODELS, Discretization, Liquid, Model
-from .scene import Scene
+from .scene import Ramp, Scene
 from .start import Pancake, least_energy_pancake
 
 HOLDS = ("none", "x", "xy", "xyz")
@@ -86,12 +86,14 @@ def sessile_droplet(
     free = {"full": "xy", "half": "x"}.get(sector.model, "")
     terms += [Centroid(axis) for axis in free]
 
-    def ramp(load: float) -> Scene:
+    pull = float(np.linalg.norm(acceleration))
+
+    def at(size: float) -> Scene:
         return sessile_droplet(
             substrate,
             volume=volume,
             liquid=liquid,
-            gravity=[load * g for g in acceleration],
+            gravity=[size / pull * g for g in acceleration],
             discretization=Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
             hold=hold,
         )
@@ -102,7 +104,7 @@ def sessile_droplet(
         (Sliding("xi2=0"), sector),
         scale=scale,
         grading=grading,
-        ramp=ramp if bond.any() else None,
+        ramp=Ramp("gravity.acceleration", 0.0, pull, at) if bond.any() else None,
         substrate=substrate,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",

@@ -17,6 +17,30 @@ from ..terms import Constraint, Scale, SurfaceTension, Term
 
 
 @dataclass(frozen=True)
+class Ramp:
+    """The way round a direct solve: scenes of one space along a parameter.
+
+    Attributes
+    ----------
+    parameter : its path in the scene file, "gravity.acceleration".
+    start, end : its values at load 0 and 1.
+    scene_at : value of the parameter to the scene.
+    """
+
+    parameter: str
+    start: float
+    end: float
+    scene_at: Callable[[float], Scene] = field(repr=False)
+
+    def value(self, load: float) -> float:
+        """The parameter at a load in [0, 1]."""
+        return self.start + load * (self.end - self.start)
+
+    def __call__(self, load: float) -> Scene:
+        return self.scene_at(self.value(load))
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything a solve needs to know.
 
@@ -28,8 +52,7 @@ class Scene:
     scale : units and frame of the computation; by default the surface's size and the tension.
         Sliding edges lie in z = 0 of its frame.
     grading : spread of the control points along the meridians.
-    ramp : load in [0, 1] to a scene of the same space, 1 being this scene: the way round if a
-        direct solve fails.
+    ramp : the way to this scene if a direct solve fails.
     substrate : the solid that a sliding edge touches, for the audit and for pictures.
     hold : axes along which the user asked for the centroid to be held.
     kind : name of the family, which decides the measures of a solution.
@@ -42,7 +65,7 @@ class Scene:
     supports: Sequence[Support] = ()
     scale: Scale | None = None
     grading: Grading = field(default_factory=Grading)
-    ramp: Callable[[float], Scene] | None = field(default=None, repr=False)
+    ramp: Ramp | None = field(default=None, repr=False)
     substrate: Plane | None = None
     hold: str = ""
     kind: str = "membrane"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypedDict
@@ -15,10 +15,12 @@ from ..checks import choice, integer, number, suggestion, vector
 from ..errors import SceneError
 from ..solids.plane import Plane
 from .droplet import HOLDS, sessile_droplet
+from .film import film_between_rings
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Scene
 
 SCHEMA = 1
+Tables = dict[str, Mapping[str, Any]]
 LARGEST_FILE = 10_000_000
 
 # Every table and key of the contract; those whose capability is not built are refused by name.
@@ -128,18 +130,19 @@ def read_scene(data: Any) -> SceneFile:
             _check_numbers(f"{name}[{i}]", _table(name, entry, f"{name}[{i}]"))
     for name, table in tables.items():
         _check_numbers(name, table)
-    if kind != "sessile_droplet":
+    if kind not in _READERS:
         raise _later(f'scene = "{kind}"')
-    return _droplet(data, tables)
-
-
-def _droplet(data: Mapping[str, Any], tables: dict[str, Mapping[str, Any]]) -> SceneFile:
-    for name in ("sheet", "cell", "rings"):
-        if name in data:
-            raise SceneError(f'{name}: does not belong to scene = "sessile_droplet"; remove it')
-    for name in ("particle", "path"):
+    for name in _FOREIGN[kind]:
         if data.get(name):
-            raise _later(f"[[{name}]]")
+            raise SceneError(f'{name}: does not belong to scene = "{kind}"; remove it')
+    if data.get("path"):
+        raise _later("[[path]]")
+    return SceneFile(_READERS[kind](data, tables), _solver(tables["solver"]))
+
+
+def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
+    if data.get("particle"):
+        raise _later("[[particle]]")
     liquid, substrate = tables["liquid"], tables["substrate"]
     for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
         if field.split(".")[1] not in table:
@@ -153,7 +156,7 @@ def _droplet(data: Mapping[str, Any], tables: dict[str, Mapping[str, Any]]) -> S
                 f"substrate.{key}: a plane has no such field; remove it or choose another "
                 f"substrate.kind ({', '.join(SUBSTRATES[1:])})"
             )
-    scene = sessile_droplet(
+    return sessile_droplet(
         Plane(substrate["contact_angle"]),
         volume=liquid["volume"],
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
@@ -161,7 +164,29 @@ def _droplet(data: Mapping[str, Any], tables: dict[str, Mapping[str, Any]]) -> S
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
     )
-    return SceneFile(scene, _solver(tables["solver"]))
+
+
+def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
+    liquid, rings = tables["liquid"], tables["rings"]
+    if "volume" in liquid:
+        raise SceneError("liquid.volume: a film's volume is rings.volume; move it there")
+    if "half_height" not in rings:
+        raise SceneError("rings.half_height: missing; a film between rings needs it")
+    return film_between_rings(
+        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
+        discretization=Discretization(**tables["discretization"]),
+        **rings,
+    )
+
+
+_READERS: dict[str, Callable[[Mapping[str, Any], Tables], Scene]] = {
+    "sessile_droplet": _droplet,
+    "film_between_rings": _film,
+}
+_FOREIGN = {
+    "sessile_droplet": ("sheet", "cell", "rings"),
+    "film_between_rings": ("gravity", "substrate", "particle", "droplet", "sheet", "cell"),
+}
 
 
 def _gravity(table: Mapping[str, Any]) -> list[float]:

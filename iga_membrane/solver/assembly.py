@@ -107,7 +107,7 @@ class Assembly:
             t.density() for t in terms if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
         ]
         self._held = [t.density() for t in self.constraints]
-        self._targets = np.array([t.value for t in self.constraints]) / self.copies
+        self._targets = np.array([t.target for t in self.constraints]) / self.copies
         self.lines = [
             (t, self._space.edge_table(t.edge, self.points[0], self._ring_elements))
             for t in terms

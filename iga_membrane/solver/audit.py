@@ -84,8 +84,8 @@ def audit(
         _scatter(total, absolute, motion, edge.functions, pull)
     residual = float(np.linalg.norm(total[:-1]) / np.linalg.norm(absolute[:-1]))
     inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
-    target = next((t.value for t in terms if isinstance(t, Volume)), None)
-    missing = abs(inside / target - 1.0) if target else 0.0
+    held = next((t for t in terms if isinstance(t, Volume)), None)
+    missing = abs(inside - held.target) / held.value if held else 0.0
     if not lines:
         return Audit(residual, missing)
     line = contact_line(surface, lines[0].edge, 2 * points[0])

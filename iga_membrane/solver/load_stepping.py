@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import Array
 from ..errors import GeometryError
-from ..scenes.scene import Scene
+from ..scenes.scene import Ramp, Scene
 from ..surface.reparametrize import arc_length
-from ..surface.surface import Surface
 from .assembly import Assembly
+from .linear import SingularMatrix
 from .newton import NewtonOptions, NewtonResult, newton
+from .stability import stability_of
 from .status import Status
 
 
@@ -26,6 +26,24 @@ class LoadStep:
     status: Status | None
 
 
+@dataclass(frozen=True)
+class Bracket:
+    """Values of a parameter between which the equilibrium is lost.
+
+    Attributes
+    ----------
+    parameter : its path in the scene file; lo : the last value with a stable equilibrium, hi : the
+        first without.
+    index_lo, index_hi : negative eigenvalues of the Hessian there; at ``hi`` of the last iterate.
+    """
+
+    parameter: str
+    lo: float
+    hi: float
+    index_lo: int
+    index_hi: int
+
+
 @dataclass(eq=False)
 class LoadPath:
     """End of load stepping.
@@ -35,16 +53,18 @@ class LoadPath:
     result : at the last good load, with the status of the last attempt.
     scene : the scene at that load.
     steps : every attempt.
+    bracket : of the limit point, if that is why it ended.
     """
 
     result: NewtonResult
     scene: Scene
     steps: list[LoadStep] = field(default_factory=list)
     last_good: float = 0.0
+    bracket: Bracket | None = None
 
 
 def load_stepping(
-    ramp: Callable[[float], Scene],
+    ramp: Ramp,
     assembly: Assembly,
     options: NewtonOptions,
     smallest: float,
@@ -54,51 +74,92 @@ def load_stepping(
 
     Parameters
     ----------
-    ramp : load to scene; all scenes share the assembly's space and supports.
-    smallest : step of the load below which to give up, STALLED.
+    ramp : its scenes share the assembly's space and supports.
+    smallest : step of the load below which to give up: LIMIT_POINT if the smallest eigenvalue has
+        fallen towards zero on the way, else STALLED.
     report : called with every load reached.
     """
     scene = ramp(0.0)
     assembly.load(scene)
     result = newton(assembly, scene.local_surface(), None, scene.grading, options)
     path = LoadPath(result, scene, [LoadStep(0.0, len(result.iterations), result.status)])
-    load, step = 0.0, 0.25
-    surface, multipliers = result.surface, result.multipliers
-    while result.status is None and load < 1.0:
-        target = min(1.0, load + step)
-        scene = ramp(target)
-        assembly.load(scene)
-        result = _attempt(assembly, scene, surface, multipliers, options)
-        path.steps.append(LoadStep(target, len(result.iterations), result.status))
+    if result.status is not None:
+        return path
+    stiffness = _stiffness(assembly, path)
+    attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
+    step = 0.25
+    while path.last_good < 1.0:
+        load = min(1.0, path.last_good + step)
+        result = _attempt(assembly, path, ramp(load), attempts)
+        path.steps.append(LoadStep(load, len(result.iterations), result.status))
         if result.status is None and result.index <= 0:
-            load, surface, multipliers = target, result.surface, result.multipliers
-            path.result, path.scene, path.last_good = result, scene, load
+            path.result, path.scene, path.last_good = result, ramp(load), load
             report(load)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
-            continue
-        step *= 0.5
-        interrupted = result.status is Status.INTERRUPTED
-        if interrupted or step < smallest:
-            reason = result.message or f"{result.index} negative eigenvalues"
-            path.result.status = Status.INTERRUPTED if interrupted else Status.STALLED
-            path.result.message = (
-                f"load stepping stopped at {load:.4g} of the load with steps of {2 * step:.2g} "
-                f"({reason})"
-            )
-            return path
-        result.status = None
+        elif result.status is Status.INTERRUPTED:
+            path.result.status, path.result.message = result.status, result.message
+            break
+        else:
+            step *= 0.5
+            if step < smallest:
+                _give_up(assembly, path, ramp, load, result, stiffness)
+                break
     return path
 
 
+PATIENCE = 20
+"""Newton iterations of one attempt: a load that needs more is approached by shorter steps."""
+SOFT = 0.25
+"""Share of its first value below which the smallest eigenvalue tells of a limit point."""
+
+
 def _attempt(
-    assembly: Assembly,
-    scene: Scene,
-    surface: Surface,
-    multipliers: Array,
-    options: NewtonOptions,
+    assembly: Assembly, path: LoadPath, scene: Scene, options: NewtonOptions
 ) -> NewtonResult:
+    """Newton at a new load from the last good state."""
+    assembly.load(scene)
+    good = path.result
+    # what the start knows of the parameter, moved rims above all, comes with it
+    shift = scene.local_surface().points - path.scene.local_surface().points
     try:
-        start = arc_length(surface, scene.grading)
+        start = arc_length(good.surface.moved(good.surface.points + shift), scene.grading)
     except (GeometryError, np.linalg.LinAlgError) as error:
-        return NewtonResult(surface, multipliers, Status.NONFINITE, str(error))
-    return newton(assembly, start, multipliers, scene.grading, options)
+        return NewtonResult(good.surface, good.multipliers, Status.NONFINITE, str(error))
+    return newton(assembly, start, good.multipliers, scene.grading, options)
+
+
+def _give_up(
+    assembly: Assembly,
+    path: LoadPath,
+    ramp: Ramp,
+    load: float,
+    failed: NewtonResult,
+    stiffness: float,
+) -> None:
+    """Name the end of a path: a limit point, or a solver at a loss."""
+    lo, hi = ramp.value(path.last_good), ramp.value(load)
+    assembly.load(path.scene)
+    left = _stiffness(assembly, path)
+    if path.last_good > 0 and left < SOFT * stiffness:
+        path.result.status = Status.LIMIT_POINT
+        path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, max(failed.index, 1))
+        path.result.message = (
+            f"no equilibrium beyond {ramp.parameter} = {lo:.6g} (none found at {hi:.6g}; "
+            f"{ramp.end:.6g} was asked for): the smallest eigenvalue falls from {stiffness:.3g} to "
+            f"{left:.2g} on the way"
+        )
+        return
+    reason = failed.message or f"{failed.index} negative eigenvalues"
+    path.result.status = Status.STALLED
+    path.result.message = (
+        f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.end:.6g}, with steps of "
+        f"{hi - lo:.1e} ({reason})"
+    )
+
+
+def _stiffness(assembly: Assembly, path: LoadPath) -> float:
+    """Smallest eigenvalue of the last good state."""
+    try:
+        return stability_of(assembly, path.result.surface, path.result.multipliers).smallest
+    except (SingularMatrix, np.linalg.LinAlgError):
+        return 0.0

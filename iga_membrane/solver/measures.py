@@ -11,7 +11,7 @@ from ..scenes.scene import Scene
 from ..splines.quadrature import gauss
 from ..splines.space import EDGES
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Gravity, Scale, SurfaceTension
+from ..terms import BodyDensity, Gravity, Scale, SurfaceTension, Volume
 from ..terms import variations as vary
 from ..terms.contact_line import wetted_area
 from .assembly import Assembly
@@ -108,9 +108,13 @@ def measures(
     values = energies(scene, assembly, surface)
     body = assembly.density(multipliers)
     values["pressure"] = -body.constant * scale.pressure
-    values["volume"] = volume(assembly, surface) * scale.length**3
+    ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
+    values["volume"] = volume(assembly, surface) * scale.length**3 + ends
     if scene.kind == "sessile_droplet":
         values |= _droplet(surface, values["A_wet"], body, scale)
+    elif scene.kind == "film_between_rings":
+        values |= _film(surface, body, scale)
+        values["volume"] = values.pop("volume") - ends + _under_rings(surface) * scale.length**3
     return {name: float(value) for name, value in values.items()}
 
 
@@ -174,6 +178,33 @@ def _droplet(surface: Surface, wet: float, body: BodyDensity, scale: Scale) -> d
         "p_apex": at_apex,
         "contact_angle_measured": float(np.degrees(line.angle @ line.arc / line.arc.sum())),
     }
+
+
+def _film(surface: Surface, body: BodyDensity, scale: Scale) -> dict[str, float]:
+    """Neck, pull on the rings and slope at them; the tension is 1 in the scene's scale."""
+    ring = surface.space.bases[0]
+    phi = ring.breaks[:-1]
+    middle = surface.at(np.column_stack([phi, np.full(len(phi), 0.5)]), 1).position
+    top = contact_line(surface, "xi2=1")
+    radius = np.linalg.norm(top.position[:, :2], axis=1)
+    outward = np.einsum("ki,ki->k", top.conormal[:, :2], top.position[:, :2]) / radius
+    slope = np.arctan2(outward, top.conormal[:, 2])
+    area = 0.5 * float(radius @ top.arc)
+    return {
+        "neck_radius": float(np.linalg.norm(middle[:, :2], axis=1).mean()) * scale.length,
+        "force": (float(top.conormal[:, 2] @ top.arc) + body.constant * area) * scale.force,
+        "end_slope_deg": float(np.degrees(slope @ top.arc / top.arc.sum())),
+    }
+
+
+def _under_rings(surface: Surface) -> float:
+    """What the flux of ``z e_z`` through the film leaves out: the discs of its rings."""
+    total = 0.0
+    for edge, sign in (("xi2=1", 1.0), ("xi2=0", -1.0)):
+        line = contact_line(surface, edge)
+        radius = np.linalg.norm(line.position[:, :2], axis=1)
+        total += sign * float(0.5 * (radius * line.position[:, 2]) @ line.arc)
+    return total
 
 
 def _equator(surface: Surface) -> float:

@@ -25,7 +25,7 @@ class SolverOptions:
 
     tolerance: float = 1e-8
     max_iterations: int = 50
-    min_load_step: float = 1e-3
+    min_load_step: float = 5e-4
     quadrature: int | None = None
     max_cpu_s: float = 600.0
     max_memory_gb: float = 8.0

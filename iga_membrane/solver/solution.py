@@ -15,7 +15,7 @@ from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
 from ..terms import BodyDensity, SurfaceTension
 from .audit import Audit
-from .load_stepping import LoadStep
+from .load_stepping import Bracket, LoadStep
 from .newton import Iteration
 from .status import Status
 
@@ -36,6 +36,7 @@ class Solution:
     audit : relative defects found by the independent check, or None.
     hold_force : (3,) total force that holds the centroid.
     contact : wetted area, support force, penetration, by the names of the result file.
+    bracket : of the limit point where the status is LIMIT_POINT.
     iterations : the Newton iterations; load_steps : the loads tried.
     cpu_seconds : by what they were spent on.
     """
@@ -56,6 +57,7 @@ class Solution:
     iterations: Sequence[Iteration] = field(default=(), repr=False)
     load_steps: Sequence[LoadStep] = field(default=(), repr=False)
     cpu_seconds: Mapping[str, float] = field(default_factory=dict, repr=False)
+    bracket: Bracket | None = None
     warnings: Sequence[str] = ()
     kind: str | None = None
 

@@ -14,18 +14,17 @@ from ..arrays import Array
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..splines import Grading
-from ..surface.motion import Motion
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Centroid, PlaneContactLine
+from ..terms import BodyDensity, Centroid, PlaneContactLine, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
-from .linear import Bordered, SingularMatrix
-from .load_stepping import LoadStep, load_stepping
+from .linear import SingularMatrix
+from .load_stepping import Bracket, LoadStep, load_stepping
 from .measures import contact_line, measures, vertical_forces
 from .newton import NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
 from .solution import Solution
-from .stability import Stability, stability
+from .stability import Stability, stability_of
 from .status import Status
 
 log = logging.getLogger("iga_membrane")
@@ -91,9 +90,9 @@ def solve(
     settings = NewtonOptions(
         options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
     )
-    reached, result, steps = _iterate(scene, assembly, settings, options, report)
-    assembly.load(reached)
-    solution = _conclude(reached, assembly, result, steps, options, started)
+    outcome = _iterate(scene, assembly, settings, options, report)
+    assembly.load(outcome.scene)
+    solution = _conclude(outcome, assembly, options, started)
     solution = replace(solution, scene=scene)
     log.debug("%s: %s", solution.status.name, solution.message)
     if not solution.success and on_fail == "raise":
@@ -116,52 +115,53 @@ def _check_memory(scene: Scene, options: SolverOptions) -> None:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class _Outcome:
+    """What the iteration reached: ``scene`` is not the one asked for if a path stopped early."""
+
+    scene: Scene
+    result: NewtonResult
+    steps: list[LoadStep]
+    bracket: Bracket | None = None
+
+
 def _iterate(
     scene: Scene,
     assembly: Assembly,
     settings: NewtonOptions,
     options: SolverOptions,
     report: Callable[[float], None],
-) -> tuple[Scene, NewtonResult, list[LoadStep]]:
-    """Direct Newton, then load stepping where it failed or ended on a saddle.
-
-    Returns the scene of the load that was reached, which is not the one asked for if load stepping
-    stopped on its way.
-    """
+) -> _Outcome:
+    """Direct Newton, then load stepping where it failed or ended on a saddle."""
     direct = newton(assembly, scene.local_surface(), None, _grading(scene), settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
     failed = direct.status is not None or direct.index > 0
     if not failed or scene.ramp is None or direct.status is Status.INTERRUPTED:
-        return scene, direct, steps
+        return _Outcome(scene, direct, steps)
     log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
     path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
-    stepped = path.result
-    stepped.linear_seconds += direct.linear_seconds
-    if stepped.status is None or (path.last_good > 0 and direct.status is not None):
-        return path.scene, stepped, steps + path.steps
-    return scene, direct, steps + path.steps
+    path.result.linear_seconds += direct.linear_seconds
+    if path.result.status is None or (path.last_good > 0 and direct.status is not None):
+        return _Outcome(path.scene, path.result, steps + path.steps, path.bracket)
+    return _Outcome(scene, direct, steps + path.steps)
 
 
 def _grading(scene: Scene) -> Grading | None:
-    return scene.grading if scene.surface.space.pole is not None else None
+    return scene.grading if scene.surface.space.bases[0].periodic else None
 
 
 def _conclude(
-    scene: Scene,
-    assembly: Assembly,
-    result: NewtonResult,
-    steps: list[LoadStep],
-    options: SolverOptions,
-    started: float,
+    outcome: _Outcome, assembly: Assembly, options: SolverOptions, started: float
 ) -> Solution:
     """Measure, judge and record a state."""
+    scene, result = outcome.scene, outcome.result
     surface, multipliers = result.surface, result.multipliers
     motion = assembly.spines.on(surface)
     verdict, checked = None, None
     status, message, kind = result.status, result.message, None
     if status is None:
         try:
-            verdict = _stability(assembly, surface, motion, multipliers)
+            verdict = stability_of(assembly, surface, multipliers)
         except (SingularMatrix, np.linalg.LinAlgError) as error:
             status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
     if status is None and options.audit:
@@ -188,7 +188,8 @@ def _conclude(
         contact=_contact(scene, surface, assembly.density(multipliers), checked),
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
-        load_steps=tuple(steps),
+        load_steps=tuple(outcome.steps),
+        bracket=outcome.bracket,
         cpu_seconds={
             "compile": assembly.compile_seconds,
             "assembly": assembly.seconds,
@@ -201,21 +202,12 @@ def _conclude(
     )
 
 
-def _stability(
-    assembly: Assembly, surface: Surface, motion: Motion, multipliers: Array
-) -> Stability:
-    system = assembly.system(surface, motion.directions, multipliers)
-    border = system.constraint_gradients
-    factor = Bordered(system.matrix, border)
-    return stability(system.matrix, assembly.mass(surface, motion.directions), border, factor)
-
-
 def _hold_force(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[float, float, float]:
     """World vector of the force with which the centroid constraints act on the liquid."""
     local = np.zeros(3)
-    volume = next((t.value for t in assembly.constraints if t.name == "volume"), 0.0)
+    volume = next((t.value for t in assembly.constraints if isinstance(t, Volume)), 0.0)
     for term, multiplier in zip(assembly.constraints, multipliers, strict=True):
         if isinstance(term, Centroid):
             local["xyz".index(term.axis)] = multiplier * volume

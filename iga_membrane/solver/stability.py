@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..surface.surface import Surface
+from .assembly import Assembly
 from .linear import Bordered, Matrix
 
 
@@ -42,6 +44,21 @@ class Stability:
     def stable(self) -> bool:
         """Whether every admissible normal motion raises the energy."""
         return self.index == 0 and self.smallest > self.error
+
+
+def stability_of(assembly: Assembly, surface: Surface, multipliers: Array) -> Stability:
+    """Stability of a state in the scene's scale.
+
+    Raises
+    ------
+    SingularMatrix
+        If the Hessian cannot be factorized.
+    """
+    directions = assembly.spines.on(surface).directions
+    system = assembly.system(surface, directions, multipliers)
+    border = system.constraint_gradients
+    factor = Bordered(system.matrix, border)
+    return stability(system.matrix, assembly.mass(surface, directions), border, factor)
 
 
 def stability(

@@ -106,7 +106,10 @@ class Constraint(BodyTerm):
     ``density`` is the integrand; the membrane's energy gets ``-multiplier * density``.
     """
 
-    value: float
+    @property
+    @abstractmethod
+    def target(self) -> float:
+        """Value of the integral over the membrane's side of the liquid."""
 
 
 class LineTerm(Term):

@@ -36,10 +36,17 @@ class Volume(Constraint):
     Attributes
     ----------
     value : volume, > 0.
+    ends : the part of it that the flux through the membrane does not see, because it lies under
+        fixed ends off z = 0.
     """
 
     value: float
+    ends: float = 0.0
     name = "volume"
+
+    @property
+    def target(self) -> float:
+        return self.value - self.ends
 
     def __post_init__(self) -> None:
         number("liquid.volume", self.value, above=0.0)
@@ -48,7 +55,7 @@ class Volume(Constraint):
         return BodyDensity(1.0)
 
     def scaled(self, scale: Scale) -> Volume:
-        return Volume(self.value / scale.length**3)
+        return Volume(self.value / scale.length**3, self.ends / scale.length**3)
 
 
 @dataclass(frozen=True)
@@ -65,7 +72,7 @@ class Centroid(Constraint):
     """
 
     axis: str
-    value: float = 0.0
+    target: float = 0.0
 
     @property
     def name(self) -> str:  # type: ignore[override]

@@ -29,7 +29,7 @@ def result(solution: Solution) -> dict[str, Any]:
         "stability_scope": solution.scene.sector.model,
         "index": solution.index,
         "lambda_min": solution.lambda_min,
-        "bracket": None,
+        "bracket": vars(solution.bracket) if solution.bracket else None,
         "unknowns": solution.unknowns,
         "load_steps": len(solution.load_steps),
         "newton_iterations": solution.newton_iterations,

@@ -25,3 +25,12 @@ def test_droplet_on_plane():
     assert max(row["error"] for row in rows) < 1e-6
     assert np.all(np.diff([row["height"] for row in rows]) > 0)
     assert np.all(np.diff([row["contact_radius"] for row in rows]) < 0)
+
+
+def test_film_limit():
+    rows, (low, high) = load("film_limit").main(heights=(0.4, 0.65), too_far=0.68)
+    assert max(row["area_error"] for row in rows) < 1e-8
+    assert rows[0]["smallest_eigenvalue"] > rows[1]["smallest_eigenvalue"] > 0
+    assert low <= 0.6627435
+    assert high >= 0.6627434
+    assert high - low < 1e-3
