@@ -56,7 +56,8 @@ def plot(
     mesh, name = _membrane(solution, color, resolution)
     options: dict[str, Any] = {"color": "#6fa8dc"}
     if name:
-        low, high = _range(mesh[name])
+        unit = solution.scene.units
+        low, high = _range(mesh[name], 1 / length if color == "mean_curvature" else unit.pressure)
         bar = {"title": name, "color": "black", "fmt": "%.3g", "vertical": True,
                "position_x": 0.88, "position_y": 0.3, "height": 0.4}  # fmt: skip
         options = {"scalars": name, "cmap": "viridis", "clim": (low, high), "scalar_bar_args": bar}
@@ -149,11 +150,11 @@ def _match(points: Any, source: Any) -> Any:
     return cKDTree(source).query(points)[1]
 
 
-def _range(values: Any) -> tuple[float, float]:
-    """Colour range without the few outliers; never empty."""
+def _range(values: Any, unit: float) -> tuple[float, float]:
+    """Colour range without the few outliers, wide enough not to show rounding as a pattern."""
     low, high = np.percentile(values, [1.0, 99.0])
     middle = 0.5 * (low + high)
-    half = max(0.5 * (high - low), 1e-3 * abs(middle), 1e-300)
+    half = max(0.5 * (high - low), 1e-2 * max(unit, abs(middle)))
     return float(middle - half), float(middle + half)
 
 
