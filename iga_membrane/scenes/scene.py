@@ -116,7 +116,7 @@ class Scene:
         """
         points = self.units.to_local(self.surface.points)
         for support in self.supports:
-            if isinstance(support, Sliding):
+            if isinstance(support, Sliding) and support.solid is None:
                 edge = self.surface.space.edge_functions(support.edge)
                 off = float(np.abs(points[edge, 2]).max())
                 if off > 1e-6:
@@ -126,6 +126,15 @@ class Scene:
                     )
                 points[edge, 2] = 0.0
         return self.surface.moved(points)
+
+    def local_supports(self) -> tuple[Support, ...]:
+        """The supports in the scene's scale and frame."""
+        return tuple(
+            Sliding(s.edge, self.units.local_sphere(s.solid))
+            if isinstance(s, Sliding) and s.solid is not None
+            else s
+            for s in self.supports
+        )
 
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""

@@ -10,12 +10,14 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
+from ..splines import EdgeTable, Table
 from ..surface.motion import Spines
 from ..surface.sector import sector_elements
 from ..surface.supports import Sliding
 from ..surface.surface import Surface
 from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm
 from ..terms import variations as vary
+from ..terms.edge_gap import EdgeGap
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
 
 
@@ -80,7 +82,7 @@ class Assembly:
         surface = scene.local_surface()
         space, sector = surface.space, scene.sector
         self.copies = sector.copies
-        self.spines = Spines(surface, tuple(scene.supports))
+        self.spines = Spines(surface, scene.local_supports())
         self.size = self.spines.size
         ring = space.bases[0]
         around = max(3, ring.degree) if ring.periodic and ring.continuity else ring.degree + 1
@@ -94,8 +96,8 @@ class Assembly:
         self.compile_seconds = process_time() - before
         self._ring_elements = np.arange(space.bases[0].elements // sector.copies)
         self._space = space
-        self._unknowns = self.spines.unknowns[self.table.functions]
-        self.above_plane = any(isinstance(s, Sliding) for s in scene.supports)
+        self._groups = self._row_groups()
+        self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
         self.load(scene)
 
     def load(self, scene: Scene) -> None:
@@ -108,11 +110,17 @@ class Assembly:
         ]
         self._held = [t.density() for t in self.constraints]
         self._targets = np.array([t.target for t in self.constraints]) / self.copies
-        self.lines = [
-            (t, self._space.edge_table(t.edge, self.points[0], self._ring_elements))
-            for t in terms
-            if isinstance(t, LineTerm)
+        self.lines = [(t, self._edge(t.edge)) for t in terms if isinstance(t, LineTerm)]
+        self._gaps = [
+            (EdgeGap(s.solid, s.edge), self._edge(s.edge))
+            for s in scene.local_supports()
+            if isinstance(s, Sliding) and s.solid is not None
         ]
+
+    @property
+    def multipliers(self) -> int:
+        """Number of multipliers: of the constraints, then of the edges held on solids."""
+        return len(self._held) + int(self.spines.held.max(initial=-1)) + 1
 
     @property
     def body(self) -> BodyDensity:
@@ -121,70 +129,183 @@ class Assembly:
 
     def density(self, multipliers: Array) -> BodyDensity:
         """Body density of the Lagrangian."""
-        held = (d * -float(m) for d, m in zip(self._held, multipliers, strict=True))
+        held = (d * -float(m) for d, m in zip(self._held, multipliers, strict=False))
         return sum(held, self.body)
 
     def energies(self, surface: Surface) -> Energies:
         """Energy and constraints of a state, without derivatives."""
         start = process_time()
-        at = vary.element_points(self.table, surface.points)
-        area, integrals = vary.energies(self.table, at, [self.body, *self._held])
-        total = self._tension * area + integrals[0]
-        total += sum(term.energy(table, surface.points) for term, table in self.lines)
+        points = surface.points
+        at = vary.element_points(self.table, points)
+        total, constraints = self._values(points, at)
         self.seconds += process_time() - start
-        return Energies(total, integrals[1:] - self._targets, at.c, float(at.x[..., 2].min()))
+        return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
+
+    def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
+        area, integrals = vary.energies(self.table, at, [self.body, *self._held])
+        integrals[0] += self._tension * area
+        for term, edge in self.lines:
+            integrals[0] += term.energy(edge, points, term.strength, self.body)
+            integrals[1:] += [term.energy(edge, points, 0.0, held) for held in self._held]
+        gaps = [
+            np.bincount(
+                self._held_numbers(edge).ravel() + 1,
+                gap.values(edge, points).ravel(),
+                self.multipliers - len(self._held) + 1,
+            )[1:]
+            for gap, edge in self._gaps
+        ]
+        return integrals[0], np.concatenate([integrals[1:] - self._targets, *gaps])
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
-        """Gradient, constraints and Hessian of a state along directions (count, 3)."""
+        """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
         start = process_time()
-        points, table = surface.points, self.table
-        along = directions[table.functions]
-        at = vary.element_points(table, points)
-        _, held = vary.energies(table, at, self._held)
-        forces = vary.forces(table, at, self._tension, self.body)
-        normal = np.einsum("eai,eai->ea", forces, along)
-        gradient, scale = self._gather(normal), self._gather(np.abs(normal))
-        matrix = self._matrix(
-            vary.hessian(table, at, self._tension, self.density(multipliers), along, self._kernels)
-        )
-        columns = [
-            self._gather(np.einsum("eai,eai->ea", vary.forces(table, at, 0.0, body), along))
-            for body in self._held
-        ]
-        for column, multiplier in zip(columns, multipliers, strict=True):
-            scale = scale + np.abs(column * multiplier)
-        for term, edge in self.lines:
-            unknowns, d = self.spines.unknowns[edge.functions], directions[edge.functions]
-            force = np.einsum("eai,eai->ea", term.forces(edge, points), d)
-            gradient = gradient + self._gather(force, unknowns)
-            scale = scale + self._gather(np.abs(force), unknowns)
-            block = np.einsum("eai,eaibj,ebj->eab", d, term.hessian(edge, points), d)
-            matrix.add(unknowns, block)
+        points = surface.points
+        at = vary.element_points(self.table, points)
+        _, constraints = self._values(points, at)
+        gradient, columns, scale = self._first_order(points, directions, at, multipliers)
+        matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
-        return System(
-            gradient,
-            np.stack(columns, axis=1) if columns else np.zeros((self.size, 0)),
-            held - self._targets,
-            float(np.linalg.norm(scale)),
-            matrix,
+        return System(gradient, columns, constraints, float(np.linalg.norm(scale)), matrix)
+
+    def _first_order(
+        self, points: Array, directions: Array, at: vary.ElementPoints, multipliers: Array
+    ) -> tuple[Array, Array, Array]:
+        """Gradient (n,), gradients of the constraints (n, m), absolute contributions (n,)."""
+        gradient, scale = np.zeros(self.size), np.zeros(self.size)
+        columns = np.zeros((self.size, self.multipliers))
+        for elements, rows in self._groups:
+            part = at.part(elements)
+            work = _along(vary.forces(rows, part, self._tension, self.body), directions, rows)
+            gradient += self._gather(work, rows.functions)
+            scale += self._gather(np.abs(work), rows.functions)
+            for k, held in enumerate(self._held):
+                work = _along(vary.forces(rows, part, 0.0, held), directions, rows)
+                columns[:, k] += self._gather(work, rows.functions)
+        for term, edge in self.lines:
+            line = self._edge_rows(edge)
+            forces = _again(term.forces(edge, points, term.strength, self.body), line)
+            work = _along(forces, directions, line)
+            gradient += self._gather(work, line.functions)
+            scale += self._gather(np.abs(work), line.functions)
+            for k, held in enumerate(self._held):
+                forces = _again(term.forces(edge, points, 0.0, held), line)
+                columns[:, k] += self._gather(_along(forces, directions, line), line.functions)
+        for gap, edge in self._gaps:
+            line = self._edge_rows(edge)
+            numbers = self._held_numbers(edge)
+            gradients = gap.gradients(edge, points)
+            for k in range(edge.functions.shape[1]):
+                work = _along(_again(gradients[:, k], line), directions, line)
+                into = np.broadcast_to(numbers[:, k, None], work.shape)
+                where = self.spines.unknowns[line.functions]
+                keep = (into >= 0) & (where >= 0)
+                np.add.at(columns, (where[keep], len(self._held) + into[keep]), work[keep])
+        scale += np.abs(columns) @ np.abs(multipliers)
+        return gradient, columns, scale
+
+    def _second_order(
+        self, points: Array, directions: Array, at: vary.ElementPoints, multipliers: Array
+    ) -> Matrix:
+        """Hessian of the Lagrangian."""
+        body = self.density(multipliers)
+        matrix = self._matrix()
+        for elements, rows in self._groups:
+            blocks = vary.hessian(
+                rows,
+                at.part(elements),
+                self._tension,
+                body,
+                directions[rows.functions],
+                self._kernels,
+            )
+            matrix.add(self.spines.unknowns[rows.functions], blocks)
+        for term, edge in self.lines:
+            self._add_edge(
+                matrix, directions, edge, term.hessian(edge, points, term.strength, body)
+            )
+        loads = np.append(multipliers[len(self._held) :], 0.0)
+        for gap, edge in self._gaps:
+            load = -loads[self._held_numbers(edge)]
+            self._add_edge(matrix, directions, edge, gap.hessian(edge, points, load))
+        return matrix
+
+    def _add_edge(self, matrix: Matrix, directions: Array, edge: EdgeTable, blocks: Array) -> None:
+        """Add edge blocks (elements, local, 3, local, 3) along directions."""
+        line = self._edge_rows(edge)
+        columns = _columns(line)
+        d = directions[line.functions]
+        blocks = blocks[:, columns][:, :, :, columns]
+        matrix.add(
+            self.spines.unknowns[line.functions],
+            np.einsum("eai,eaibj,ebj->eab", d, blocks, d, optimize=True),
         )
 
     def mass(self, surface: Surface, directions: Array) -> Matrix:
         """Mass matrix of normal displacement."""
         at = vary.element_points(self.table, surface.points)
-        return self._matrix(vary.mass(self.table, at, directions[self.table.functions]))
+        matrix = self._matrix()
+        for elements, rows in self._groups:
+            blocks = vary.mass(rows, at.part(elements), directions[rows.functions])
+            matrix.add(self.spines.unknowns[rows.functions], blocks)
+        return matrix
 
-    def _gather(self, values: Array, unknowns: Index | None = None) -> Array:
-        """(n,) sums of element contributions by unknown; fixed points (-1) are dropped."""
-        where = self._unknowns if unknowns is None else unknowns
+    def _row_groups(self) -> list[tuple[slice | Index, Table]]:
+        """Elements and their tables by rows of the motion; elements at a curved solid have more
+        rows than functions."""
+        table, second = self.table, self.spines.second
+        spare = len(self.spines.points) - 1
+        more = second[table.functions] < spare
+        touching = more.any(axis=1)
+        if not touching.any():
+            return [(slice(None), table)]
+        near, rest = np.flatnonzero(touching), np.flatnonzero(~touching)
+        columns = np.flatnonzero(more.any(axis=0))
+        edge = table.part(near)
+        rows = edge.with_columns(columns, second[edge.functions[:, columns]])
+        return [(rest, table.part(rest)), (near, rows)]
+
+    def _edge(self, edge: str) -> EdgeTable:
+        return self._space.edge_table(edge, self.points[0], self._ring_elements)
+
+    def _edge_rows(self, edge: EdgeTable) -> EdgeTable:
+        """An edge's table by rows of the motion."""
+        second, spare = self.spines.second, len(self.spines.points) - 1
+        more = second[edge.functions]
+        columns = np.flatnonzero((more < spare).any(axis=0))
+        return edge.with_columns(columns, more[:, columns]) if len(columns) else edge
+
+    def _held_numbers(self, edge: EdgeTable) -> Index:
+        """(elements, local) number of the gap constraint of each function, -1 for none."""
+        return self.spines.held[self.spines.second[edge.functions]]
+
+    def _gather(self, values: Array, rows: Index) -> Array:
+        """(n,) sums of element contributions by unknown; rows without one are dropped."""
+        where = self.spines.unknowns[rows]
         sums = np.bincount(where.ravel() + 1, values.ravel(), self.size + 1)[1:]
         return sums.astype(float, copy=False)
 
-    def _matrix(self, blocks: Array) -> Matrix:
-        matrix = Matrix(self.size, None if self.size <= DENSE_LIMIT else self._pattern)
-        matrix.add(self._unknowns, blocks)
-        return matrix
+    def _matrix(self) -> Matrix:
+        return Matrix(self.size, None if self.size <= DENSE_LIMIT else self._pattern)
 
     @cached_property
     def _pattern(self) -> SparsePattern:
-        return SparsePattern(self.size, self._unknowns)
+        return SparsePattern(
+            self.size, [self.spines.unknowns[rows.functions] for _, rows in self._groups]
+        )
+
+
+def _along(forces: Array, directions: Array, rows: Table | EdgeTable) -> Array:
+    """(elements, local) work of forces along the rows' directions."""
+    return np.einsum("eai,eai->ea", forces, directions[rows.functions])
+
+
+def _columns(line: EdgeTable) -> Index:
+    """Which function of the edge belongs to each of its rows."""
+    local = line.functions.shape[1] - len(line.repeated)
+    return np.concatenate([np.arange(local), line.repeated])
+
+
+def _again(forces: Array, line: EdgeTable) -> Array:
+    """Forces by function, repeated for the second rows."""
+    return forces[:, _columns(line)]

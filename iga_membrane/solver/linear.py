@@ -6,6 +6,7 @@ eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,25 +32,28 @@ class SparsePattern:
     Parameters
     ----------
     size : number of unknowns.
-    unknowns : (elements, local) unknown of each local function, -1 where fixed.
+    groups : arrays (elements, local) of the unknown of each local function, -1 where fixed.
     """
 
-    def __init__(self, size: int, unknowns: Index) -> None:
+    def __init__(self, size: int, groups: Sequence[Index]) -> None:
         self.size = size
-        keys = _keys(size, unknowns)
-        inside = keys < size * size
-        self.entries, position = np.unique(keys[inside], return_inverse=True)
-        self.slots = np.full(keys.shape, len(self.entries))
-        self.slots[inside] = position.ravel()
+        keys = np.concatenate([_keys(size, unknowns) for unknowns in groups])
+        self.entries = np.unique(keys[keys < size * size])
         columns, self.rows = np.divmod(self.entries, size)
         self.starts = np.searchsorted(columns, np.arange(size + 1))
         self.diagonal = np.searchsorted(self.entries, np.arange(size) * (size + 1))
+        self._slots: dict[bytes, Index] = {}
 
-    def positions(self, unknowns: Index) -> Index:
-        """Slots of other blocks that lie inside the pattern."""
-        keys = _keys(self.size, unknowns)
-        slots = np.searchsorted(self.entries, keys)
-        return np.asarray(np.where(keys < self.size**2, slots, len(self.entries)))
+    def slots(self, unknowns: Index) -> Index:
+        """Places of blocks that lie inside the pattern, found once for each set of them."""
+        key = unknowns.tobytes()
+        found = self._slots.get(key)
+        if found is None:
+            keys = _keys(self.size, unknowns)
+            places = np.searchsorted(self.entries, keys)
+            found = np.where(keys < self.size**2, places, len(self.entries))
+            self._slots[key] = found
+        return found
 
 
 def _keys(size: int, unknowns: Index) -> Index:
@@ -73,12 +77,8 @@ class Matrix:
 
     def add(self, unknowns: Index, blocks: Array) -> None:
         """Add element blocks (elements, local, local)."""
-        if self.pattern is None:
-            slots = _keys(self.size, unknowns)
-        elif len(self.pattern.slots) == blocks.size:
-            slots = self.pattern.slots
-        else:
-            slots = self.pattern.positions(unknowns)
+        inside = self.pattern
+        slots = _keys(self.size, unknowns) if inside is None else inside.slots(unknowns)
         self.data += np.bincount(slots, blocks.ravel(), len(self.data) + 1)[:-1]
 
     def diagonal(self) -> Array:

@@ -13,7 +13,6 @@ from ..splines.space import EDGES
 from ..surface.surface import Surface
 from ..terms import BodyDensity, Gravity, Scale, SurfaceTension, Volume
 from ..terms import variations as vary
-from ..terms.contact_line import wetted_area
 from .assembly import Assembly
 
 
@@ -126,8 +125,9 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
     gravity = sum((t.density() for t in local if isinstance(t, Gravity)), BodyDensity())
     area, (weight,) = vary.energies(table, at, [gravity])
     tension = sum(t.gamma for t in local if isinstance(t, SurfaceTension))
-    lines = sum(term.energy(edge, surface.points) for term, edge in assembly.lines)
-    wet = sum(wetted_area(edge, surface.points) for _, edge in assembly.lines)
+    none = BodyDensity()
+    lines = sum(t.energy(edge, surface.points, t.strength, none) for t, edge in assembly.lines)
+    wet = sum(t.energy(edge, surface.points, 1.0, none) for t, edge in assembly.lines)
     e_surf = copies * (tension * area + lines) * scale.energy
     e_grav = copies * float(weight) * scale.energy + _world_weight(scene, assembly, surface)
     total = copies * assembly.energies(surface).total * scale.energy + (

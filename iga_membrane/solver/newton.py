@@ -108,7 +108,7 @@ def newton(
     multipliers : start, or None for the best balance of the start's forces.
     grading : of the arc length, or None to leave the parametrization alone.
     """
-    count = len(assembly.constraints)
+    count = assembly.multipliers
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
         if multipliers is None and count:
@@ -182,7 +182,7 @@ def _iterate(
 def _best_balance(assembly: Assembly, surface: Surface) -> Array:
     """Multipliers that leave the least of the forces of a state."""
     motion = assembly.spines.on(surface)
-    system = assembly.system(surface, motion.directions, np.zeros(len(assembly.constraints)))
+    system = assembly.system(surface, motion.directions, np.zeros(assembly.multipliers))
     return np.asarray(np.linalg.lstsq(system.constraint_gradients, system.gradient)[0], float)
 
 

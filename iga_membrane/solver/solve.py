@@ -208,7 +208,7 @@ def _hold_force(
     """World vector of the force with which the centroid constraints act on the liquid."""
     local = np.zeros(3)
     volume = next((t.value for t in assembly.constraints if isinstance(t, Volume)), 0.0)
-    for term, multiplier in zip(assembly.constraints, multipliers, strict=True):
+    for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
         if isinstance(term, Centroid):
             local["xyz".index(term.axis)] = multiplier * volume
     x, y, z = (float(f) for f in scene.units.axes @ local * scene.units.force)
@@ -293,7 +293,7 @@ def _named(
 ) -> dict[str, float]:
     return {
         term.name: float(m) * pressure / (length if isinstance(term, Centroid) else 1.0)
-        for term, m in zip(assembly.constraints, multipliers, strict=True)
+        for term, m in zip(assembly.constraints, multipliers, strict=False)
     }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -36,22 +36,27 @@ class Table:
         """(elements, 3 points, local): values, d1 and d2 under each other, for one product."""
         return np.concatenate([self.values, self.d1, self.d2], axis=1)
 
-    def part(self, elements: slice) -> Table:
+    def part(self, elements: slice | Index) -> Table:
         """First-order table of some of the elements."""
-        return Table(
-            self.functions[elements],
-            self.values[elements],
-            self.d1[elements],
-            self.d2[elements],
-            self.weights[elements],
-            self.parameters[elements],
+        return Table(*(getattr(self, name)[elements] for name in _FIRST_ORDER))
+
+    def with_columns(self, columns: Index, functions: Index) -> Table:
+        """Some local functions once more, under other numbers (elements, len(columns))."""
+        values, d1, d2 = (
+            np.concatenate([rows, rows[..., columns]], axis=-1)
+            for rows in (self.values, self.d1, self.d2)
         )
+        functions = np.hstack([self.functions, functions])
+        return Table(functions, values, d1, d2, self.weights, self.parameters)
 
     def derivatives(self, coefficients: Array) -> tuple[Array, Array, Array]:
         """A field and its two parametric derivatives: three arrays (elements, points, c)."""
         field = self.stacked @ coefficients[self.functions]
         value, d1, d2 = np.split(field, 3, axis=1)
         return value, d1, d2
+
+
+_FIRST_ORDER = ("functions", "values", "d1", "d2", "weights", "parameters")
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +67,21 @@ class EdgeTable:
     ----------
     functions : (elements, local); values, d : (elements, points, local); weights : (elements,
         points).
+    repeated : local functions that stand a second time at the end, under other numbers.
     """
 
     functions: Index
     values: Array
     d: Array
     weights: Array
+    repeated: Index = field(default_factory=lambda: np.zeros(0, int))
+
+    def with_columns(self, columns: Index, functions: Index) -> EdgeTable:
+        """Some local functions once more, under other numbers (elements, len(columns))."""
+        return EdgeTable(
+            np.hstack([self.functions, functions]),
+            np.concatenate([self.values, self.values[..., columns]], axis=-1),
+            np.concatenate([self.d, self.d[..., columns]], axis=-1),
+            self.weights,
+            columns,
+        )

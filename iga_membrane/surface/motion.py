@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array, Index
 from ..errors import GeometryError
@@ -24,15 +25,18 @@ from .surface import Surface
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Linear map from unknowns to displacements of control points.
+    """Linear map from unknowns to displacements of control points: rows (point, direction,
+    unknown).
 
     Attributes
     ----------
-    directions : (count, 3) displacement of each control point per unit of its unknown.
-    unknowns : (count,) number of its unknown, -1 where it is fixed.
+    points : (rows,) control point of each row; row ``i < count`` belongs to control point ``i``.
+    directions : (rows, 3) its displacement per unit of the unknown.
+    unknowns : (rows,) number of the unknown, -1 where there is none.
     size : number of unknowns.
     """
 
+    points: Index
     directions: Array
     unknowns: Index
     size: int
@@ -40,24 +44,38 @@ class Motion:
     def displacement(self, step: Array) -> Array:
         """(count, 3) displacements for unknowns (size,)."""
         padded = np.append(step, 0.0)
-        return np.asarray(padded[self.unknowns][:, None] * self.directions)
+        moves = padded[self.unknowns][:, None] * self.directions
+        total = np.zeros((self.points.max() + 1, 3))
+        np.add.at(total, self.points, moves)
+        return total
 
 
 class Spines:
     """The spine motion of a surface: a fixed numbering of unknowns, directions on demand.
 
+    Every control point has one row. An edge that slides on a curved solid has a second row for
+    each of its points, along the solid's normal: the edge is held on the solid by a constraint,
+    not by its directions.
+
     Parameters
     ----------
     surface : its points tell which edges lie in symmetry planes.
     supports : what restricts the motion.
+
+    Attributes
+    ----------
+    points, unknowns, size : as in :class:`Motion`; the last row is a spare without an unknown.
+    second : (count,) the second row of each control point, or the spare row.
+    held : (rows,) number of the gap constraint that belongs to a second row, else -1.
     """
 
     def __init__(self, surface: Surface, supports: tuple[Support, ...] = ()) -> None:
         space = surface.space
         self.space = space
-        self._sliding = [s.edge for s in supports if isinstance(s, Sliding)]
+        self._sliding = [s for s in supports if isinstance(s, Sliding)]
         self._mirrors: list[tuple[Index, int]] = []
         owner: Index = np.arange(space.count)
+        fixed = np.zeros(space.count, bool)
         for support in supports:
             if isinstance(support, Sector) and support.model != "full":
                 owner = sector_images(space, support)[owner]
@@ -68,15 +86,22 @@ class Spines:
                 axis = "xyz".index(support.axis)
                 on_plane = np.abs(surface.points[:, axis]) <= 1e-12 * surface.size
                 self._mirrors.append((np.flatnonzero(on_plane), axis))
-        fixed = np.zeros(space.count, bool)
-        for support in supports:
-            if isinstance(support, Fixed):
+            elif isinstance(support, Fixed):
                 fixed[space.edge_functions(support.edge)] = True
-        leaders = np.unique(owner[~fixed[owner]])
-        number = np.full(space.count, -1)
-        number[leaders] = np.arange(len(leaders))
-        self.unknowns: Index = number[owner]
-        self.size = len(leaders)
+        self._curved = [
+            (s, space.edge_functions(s.edge)) for s in self._sliding if s.solid is not None
+        ]
+        edge = np.concatenate([np.zeros(0, int), *(points for _, points in self._curved)])
+        numbers = _numbered(owner, fixed[owner])
+        seconds = _numbered(owner[edge], np.zeros(len(edge), bool))
+        primary = int(numbers.max(initial=-1)) + 1
+        self.size = primary + int(seconds.max(initial=-1)) + 1
+        spare = space.count + len(edge)
+        self.points: Index = np.concatenate([np.arange(space.count), edge, [0]])
+        self.unknowns: Index = np.concatenate([numbers, primary + seconds, [-1]])
+        self.held: Index = np.concatenate([np.full(space.count, -1), seconds, [-1]])
+        self.second: Index = np.full(space.count, spare)
+        self.second[edge] = space.count + np.arange(len(edge))
         self._seams = [
             tuple(space.edge_functions(edge) for edge in support.edges)
             for support in supports
@@ -91,12 +116,12 @@ class Spines:
         """
         space = surface.space
         normals = self._normals(surface)
-        for edge in self._sliding:
-            along, end = EDGES[edge]
+        for support in self._sliding:
+            along, end = EDGES[support.edge]
             basis = space.bases[1 - along]
             parameter = (basis.abscissae - basis.breaks[0]) / (basis.breaks[-1] - basis.breaks[0])
             w = np.abs(parameter - end)
-            rim = _conormals(surface, edge)
+            rim = _conormals(surface, support)
             if along == 0:
                 normals = (1 - w)[None, :, None] * rim[:, None] + w[None, :, None] * normals
             else:
@@ -110,7 +135,13 @@ class Spines:
             directions[points, axis] = 0.0
             length = np.linalg.norm(directions[points], axis=1, keepdims=True)
             directions[points] /= np.where(length > 0, length, 1.0)
-        return Motion(directions, self.unknowns, self.size)
+        normals_of_solids = [
+            support.solid.normal(surface.points[points])
+            for support, points in self._curved
+            if support.solid is not None
+        ]
+        rows = np.concatenate([directions, *normals_of_solids, np.zeros((1, 3))])
+        return Motion(self.points, rows, self.unknowns, self.size)
 
     @cached_property
     def _derivative_matrices(self) -> tuple[Array, Array, Array, Array]:
@@ -147,17 +178,28 @@ class Spines:
         return np.asarray(c / length)
 
 
-def _conormals(surface: Surface, edge: str) -> Array:
-    """(n, 3) unit vectors in z = 0 that point out of the surface at an edge's abscissae."""
-    along, end = EDGES[edge]
+def _conormals(surface: Surface, support: Sliding) -> Array:
+    """(n, 3) unit vectors in the solid's surface that point out of the membrane's edge at its
+    abscissae: ``a_c x n_c`` of paper eq. (34)."""
+    along, end = EDGES[support.edge]
     net = surface.net
     row = net[:, -end] if along == 0 else net[-end]
     basis = surface.space.bases[along]
     tangent = basis.derivative_at_abscissae() @ row
-    outward = np.stack([tangent[:, 1], -tangent[:, 0], np.zeros(len(row))], axis=1)
+    normal = np.array([[0.0, 0.0, 1.0]])
+    if support.solid is not None:
+        normal = support.solid.normal(basis.matrix(basis.abscissae) @ row)
+    outward = np.cross(tangent, normal)
     if (along == 0) == (end == 1):
         outward = -outward
     return np.asarray(outward / np.linalg.norm(outward, axis=1, keepdims=True))
+
+
+def _numbered(owner: Index, fixed: NDArray[np.bool_]) -> Index:
+    """Consecutive numbers of the owners, -1 where fixed."""
+    leaders = np.unique(owner[~fixed])
+    numbers = np.searchsorted(leaders, owner)
+    return np.where(fixed, -1, numbers)
 
 
 def _points_of_field(space: Space, net: Array) -> Array:

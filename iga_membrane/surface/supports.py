@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from ..solids.sphere import Sphere
+
 
 @dataclass(frozen=True)
 class Fixed:
@@ -20,14 +22,16 @@ class Fixed:
 
 @dataclass(frozen=True)
 class Sliding:
-    """An edge that slides on the plane z = 0: a contact line.
+    """An edge that slides on a solid: a contact line.
 
     Attributes
     ----------
     edge : as for :class:`Fixed`.
+    solid : what it slides on; None is the plane z = 0.
     """
 
     edge: str = "xi2=0"
+    solid: Sphere | None = None
 
 
 @dataclass(frozen=True)

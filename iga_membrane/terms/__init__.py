@@ -1,7 +1,9 @@
 """Terms: what the membrane pays for, with exact first and second variations."""
 
 from .contact_line import PlaneContactLine
+from .edge_gap import EdgeGap
 from .gravity import Gravity
+from .sphere_wetting import SphereContactLine
 from .tension import SurfaceTension
 from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term
 from .volume import Centroid, Pressure, Volume
@@ -12,11 +14,13 @@ __all__ = [
     "BodyTerm",
     "Centroid",
     "Constraint",
+    "EdgeGap",
     "Gravity",
     "LineTerm",
     "PlaneContactLine",
     "Pressure",
     "Scale",
+    "SphereContactLine",
     "SurfaceTension",
     "Term",
     "Volume",

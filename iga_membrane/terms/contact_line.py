@@ -1,4 +1,7 @@
-"""Contact line on a plane: Young's angle as a natural boundary condition."""
+"""Contact line on a plane: Young's angle as a natural boundary condition.
+
+The wetted part of z = 0 adds nothing to body integrals, so ``body`` is not used here.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import contact_angle, number
 from ..splines import EdgeTable
-from .term import LineTerm, Scale
+from .term import BodyDensity, LineTerm, Scale
 
 
 @dataclass(frozen=True)
@@ -44,20 +47,20 @@ class PlaneContactLine(LineTerm):
     def scaled(self, scale: Scale) -> PlaneContactLine:
         return PlaneContactLine(self.gamma / scale.tension, self.contact_angle, self.edge)
 
-    def energy(self, table: EdgeTable, points: Array) -> float:
-        return self.strength * wetted_area(table, points)
+    def energy(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> float:
+        return strength * wetted_area(table, points)
 
-    def forces(self, table: EdgeTable, points: Array) -> Array:
+    def forces(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> Array:
         x, dx = _curve(table, points)
-        w = 0.5 * self.strength * table.weights[..., None]
+        w = 0.5 * strength * table.weights[..., None]
         forces = np.zeros((*table.functions.shape, 3))
         forces[..., 0] = _test(table.values, w * dx[..., 1:2]) - _test(table.d, w * x[..., 1:2])
         forces[..., 1] = _test(table.d, w * x[..., :1]) - _test(table.values, w * dx[..., :1])
         return forces
 
-    def hessian(self, table: EdgeTable, points: Array) -> Array:
+    def hessian(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> Array:
         half = np.einsum("eqa,eqb,eq->eab", table.values, table.d, table.weights)
-        skew = 0.5 * self.strength * (half - half.transpose(0, 2, 1))
+        skew = 0.5 * strength * (half - half.transpose(0, 2, 1))
         elements, local = table.functions.shape
         hessian = np.zeros((elements, local, 3, local, 3))
         hessian[:, :, 0, :, 1] = skew

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
+from ..solids.sphere import Sphere
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
@@ -52,6 +53,11 @@ class Scale:
     def to_world(self, points: Array) -> Array:
         """World coordinates of local, dimensionless points (..., 3)."""
         return np.asarray(np.array(self.origin) + self.length * (points @ self.axes.T))
+
+    def local_sphere(self, sphere: Sphere) -> Sphere:
+        """A sphere in local, dimensionless coordinates."""
+        x, y, z = (float(c) for c in self.to_local(np.array(sphere.center)))
+        return Sphere(sphere.contact_angle, sphere.radius / self.length, (x, y, z))
 
     def to_local(self, points: Array) -> Array:
         """Local, dimensionless coordinates of world points (..., 3)."""
@@ -113,18 +119,29 @@ class Constraint(BodyTerm):
 
 
 class LineTerm(Term):
-    """Energy of an edge, quadratic or not in its control points."""
+    """A contact line: ``strength`` times the area wetted inside it, and the part of body integrals
+    that the flux through the membrane leaves out because it lies under the wetted area.
 
+    All methods take ``strength`` and ``body`` so that one line serves the energy (its own strength,
+    the sum of bodies) and every constraint (no strength, the constraint's density).
+    """
+
+    gamma: float
     edge: str
 
+    @property
     @abstractmethod
-    def energy(self, table: EdgeTable, points: Array) -> float:
-        """Energy of the edge's elements for control points (count, 3)."""
+    def strength(self) -> float:
+        """Energy per wetted area, ``-gamma cos(theta)``."""
 
     @abstractmethod
-    def forces(self, table: EdgeTable, points: Array) -> Array:
+    def energy(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> float:
+        """Value on the edge's elements for control points (count, 3)."""
+
+    @abstractmethod
+    def forces(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> Array:
         """(elements, local, 3) derivative by each local control point."""
 
     @abstractmethod
-    def hessian(self, table: EdgeTable, points: Array) -> Array:
+    def hessian(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> Array:
         """(elements, local, 3, local, 3) second derivative."""

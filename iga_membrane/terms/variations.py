@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..splines import Table
 from .term import BodyDensity
 
@@ -39,7 +39,7 @@ class ElementPoints:
     c: Array
     area: Array
 
-    def part(self, elements: slice) -> ElementPoints:
+    def part(self, elements: slice | Index) -> ElementPoints:
         """Some of the elements."""
         return ElementPoints(
             *(getattr(self, name)[elements] for name in ("x", "a1", "a2", "c", "area"))

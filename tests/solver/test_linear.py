@@ -7,7 +7,7 @@ from iga_membrane.solver.linear import Bordered, Matrix, SingularMatrix, SparseP
 def chain(size, negative, dense):
     """Tridiagonal matrix of two-node elements, with some diagonal entries pulled below zero."""
     pairs = np.stack([np.arange(size - 1), np.arange(1, size)], axis=1)
-    matrix = Matrix(size, None if dense else SparsePattern(size, pairs))
+    matrix = Matrix(size, None if dense else SparsePattern(size, [pairs]))
     matrix.add(pairs, np.broadcast_to([[2.0, -1.0], [-1.0, 2.0]], (size - 1, 2, 2)).copy())
     ends = np.array([[0], [size - 1]])
     matrix.add(ends, np.full((2, 1, 1), 2.0))
@@ -42,7 +42,7 @@ def test_fixed_points_are_left_out():
 @pytest.mark.parametrize("dense", [True, False])
 def test_a_singular_matrix_is_an_error_not_a_number(dense):
     pairs = np.array([[0, 1], [1, 2]])
-    matrix = Matrix(3, None if dense else SparsePattern(3, pairs))
+    matrix = Matrix(3, None if dense else SparsePattern(3, [pairs]))
     matrix.add(pairs, np.broadcast_to([[1.0, -1.0], [-1.0, 1.0]], (2, 2, 2)).copy())
     with pytest.raises(SingularMatrix):
         Bordered(matrix, np.zeros((3, 0))).solve(np.array([1.0, 0.0, 0.0]), np.zeros(0))

@@ -34,6 +34,8 @@ def scenes():
         for model in ("half", "quarter", "eighth"):
             scene = droplet(60, space=space, degree=degree, elements=4, model=model)
             yield pytest.param(with_terms(scene, everything), id=f"{space} {degree} {model}")
+    for model in ("full", "eighth"):
+        yield pytest.param(on_sphere(model), id=f"sphere {model}")
     yield pytest.param(pinned_cap(1.0, [TENSION, iga.Volume(1.0)], "half"), id="fixed rim")
     flat = iga.sheet(1.0, elements=4)
     bent = flat.moved(
@@ -42,6 +44,16 @@ def scenes():
     mirrors = [iga.Symmetry("x"), iga.Symmetry("y"), iga.Fixed("xi1=1")]
     yield pytest.param(iga.Scene(bent, [TENSION, GRAVITY], mirrors), id="symmetry planes")
     yield pytest.param(iga.Scene(tube(), [TENSION, GRAVITY], [iga.Joint()]), id="joint")
+
+
+def on_sphere(model):
+    """A drop whose edge slides on a sphere, off it by a little, with weight and volume."""
+    scene = droplet(110, degree=3, elements=4, model=model)
+    sphere = iga.Sphere(contact_angle=70.0, radius=1.5, center=(0.0, 0.0, -1.2))
+    terms = [TENSION, iga.Gravity(0.7, (0.0, 0.0, -1.1)), iga.Volume(4.0)]
+    terms.append(iga.SphereContactLine(1.3, sphere))
+    supports = [iga.Sliding("xi2=0", sphere), iga.Sector(model)]
+    return iga.Scene(scene.surface, terms, supports, scale=iga.Scale())
 
 
 def tube():
@@ -70,7 +82,7 @@ def state(scene, seed=0):
     surface = surface.moved(surface.points + motion.displacement(
         0.02 * rng.standard_normal(assembly.size)))  # fmt: skip
     motion = assembly.spines.on(surface)
-    multipliers = rng.uniform(0.5, 2.0, len(assembly.constraints))
+    multipliers = rng.uniform(0.5, 2.0, assembly.multipliers)
     direction = rng.standard_normal(assembly.size)
     direction *= 0.3 / np.linalg.norm(motion.displacement(direction), axis=1).max()
     return assembly, surface, multipliers, direction, motion
@@ -136,7 +148,12 @@ def test_gradient_agrees_with_the_complex_step(scene):
     at = vary.element_points(assembly.table, points)
     area, bodies = vary.energies(assembly.table, at, [assembly.density(multipliers)])
     total = assembly._tension * area + bodies[0]
-    total = total + sum(term.energy(edge, points) for term, edge in assembly.lines)
+    body = assembly.density(multipliers)
+    lines = (term.energy(edge, points, term.strength, body) for term, edge in assembly.lines)
+    total = total + sum(lines)
+    loads = np.append(multipliers[len(assembly.constraints) :], 0.0)
+    for gap, edge in assembly._gaps:
+        total = total - (loads[assembly._held_numbers(edge)] * gap.values(edge, points)).sum()
     exact = system.residual(multipliers)
     scale = np.linalg.norm(exact) * np.linalg.norm(direction)
     assert abs(total.imag / h - exact @ direction) <= 1e-12 * scale

@@ -1,0 +1,62 @@
+"""A spherical substrate, asperity or particle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array
+from ..checks import contact_angle, number, vector
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Solid ball.
+
+    Attributes
+    ----------
+    contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180.
+    radius : > 0.
+    center : its centre.
+    """
+
+    contact_angle: float
+    radius: float
+    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        angle = contact_angle("substrate.contact_angle", self.contact_angle)
+        object.__setattr__(self, "contact_angle", angle)
+        radius = number("substrate.radius", self.radius, above=0.0)
+        object.__setattr__(self, "radius", radius)
+        object.__setattr__(self, "center", vector("substrate.center", self.center))
+
+    def offset(self, points: ArrayLike) -> tuple[Array, Array]:
+        """Vectors from the centre to points (..., 3) and their lengths."""
+        away = np.asarray(points) - np.array(self.center)
+        return away, np.sqrt(np.einsum("...i,...i->...", away, away))
+
+    def gap(self, points: ArrayLike) -> Array:
+        """Distance to the surface of points (..., 3), positive outside: paper eq. (24)."""
+        return np.asarray(self.offset(points)[1] - self.radius)
+
+    def normal(self, points: ArrayLike) -> Array:
+        """(..., 3) gradient of the gap, out of the solid: paper eq. (27).
+
+        At the centre, where it does not exist, the result is not a number.
+        """
+        away, distance = self.offset(points)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(away / distance[..., None])
+
+    def gap_hessian(self, points: ArrayLike) -> Array:
+        """(..., 3, 3) second derivative of the gap, ``(1 - n n) / distance``."""
+        normal = self.normal(points)
+        distance = self.offset(points)[1][..., None, None]
+        return np.asarray((np.eye(3) - normal[..., :, None] * normal[..., None, :]) / distance)
+
+    def closest_point(self, points: ArrayLike) -> Array:
+        """(..., 3) projection onto the surface: paper eq. (28)."""
+        return np.asarray(np.array(self.center) + self.radius * self.normal(points))
