@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,21 +11,31 @@ import numpy as np
 from ..arrays import Array
 from ..checks import choice, number, vector
 from ..errors import SceneError
-from ..solids.plane import Plane
+from ..solids import Plane, Sphere
 from ..splines import Grading
 from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
-from ..terms import Centroid, Gravity, PlaneContactLine, Scale, SurfaceTension, Term, Volume
+from ..terms import (
+    Centroid,
+    Gravity,
+    LineTerm,
+    PlaneContactLine,
+    Scale,
+    SphereContactLine,
+    SurfaceTension,
+    Term,
+    Volume,
+)
 from .liquid import MODELS, Discretization, Liquid, Model
 from .scene import Ramp, Scene
-from .start import Pancake, least_energy_pancake
+from .start import Pancake, drop_on_sphere, least_energy_pancake
 
 HOLDS = ("none", "x", "xy", "xyz")
 
 
 def sessile_droplet(
-    substrate: Plane,
+    substrate: Plane | Sphere,
     *,
     volume: float,
     liquid: Liquid | None = None,
@@ -33,11 +44,11 @@ def sessile_droplet(
     hold: str = "none",
     start: Surface | None = None,
 ) -> Scene:
-    """Droplet of a volume on a plane.
+    """Droplet of a volume on a plane or on top of a sphere.
 
     Parameters
     ----------
-    substrate : the plane with its contact angle.
+    substrate : the plane or sphere with its contact angle.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
@@ -50,41 +61,36 @@ def sessile_droplet(
     ------
     SceneError
         A value out of its range; 180 degrees (not available yet); a model with a mirror plane that
-        gravity does not have; a start below the plane.
+        gravity does not have; a start below the substrate.
     """
     liquid = liquid or Liquid()
     mesh = discretization or Discretization()
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     acceleration = _acceleration(gravity)
-    axes = substrate.axes()
-    length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
-    x, y, z = (tuple(float(a) for a in row) for row in axes)
-    scale = Scale(length, liquid.surface_tension, substrate.point, (x, y, z))
-    bond = liquid.density * (acceleration @ axes) * length**2 / liquid.surface_tension
-    sector = _sector(mesh, bond)
-    angle = substrate.contact_angle
-    if angle == 180.0:
+    if substrate.contact_angle == 180.0:
         raise SceneError(
             "substrate.contact_angle = 180.0: not available yet in this version: at 180 degrees "
             "the foot is a contact area without a contact line; give an angle < 180"
         )
-    pancake = least_energy_pancake(angle, max(0.0, -float(bond[2])), 4.0 * np.pi / 3.0)
-    grading = _grading(angle, abs(float(bond[2])), pancake.length)
+    origin, axes = _frame(substrate)
+    length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
+    x, y, z = (tuple(float(a) for a in row) for row in axes)
+    scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
+    bond = liquid.density * (acceleration @ axes) * length**2 / liquid.surface_tension
+    sector = _sector(mesh, bond)
+    foot = _foot(substrate, liquid, length, max(0.0, -float(bond[2])))
+    grading = _grading(substrate.contact_angle, abs(float(bond[2])), foot.pancake.length)
     if start is None:
-        start = _start(pancake, mesh, grading, np.radians(angle), scale)
+        start = _start(foot, mesh, grading, scale)
     else:
         _check_above(start, substrate)
-    terms: list[Term] = [
-        SurfaceTension(liquid.surface_tension),
-        Volume(volume),
-        PlaneContactLine(liquid.surface_tension, angle),
-    ]
+    terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume), foot.line]
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)
         terms.append(Gravity(liquid.density, (gx, gy, gz)))
-    free = {"full": "xy", "half": "x"}.get(sector.model, "")
-    terms += [Centroid(axis) for axis in free]
+    if isinstance(substrate, Plane):
+        terms += [Centroid(axis) for axis in {"full": "xy", "half": "x"}.get(sector.model, "")]
 
     pull = float(np.linalg.norm(acceleration))
 
@@ -101,7 +107,7 @@ def sessile_droplet(
     return Scene(
         start,
         terms,
-        (Sliding("xi2=0"), sector),
+        (foot.support, sector),
         scale=scale,
         grading=grading,
         ramp=Ramp("gravity.acceleration", 0.0, pull, at) if bond.any() else None,
@@ -109,7 +115,7 @@ def sessile_droplet(
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
         description=_describe(substrate, volume, liquid, acceleration, mesh, sector, hold),
-        warnings=_hints(angle),
+        warnings=_hints(substrate, bond, sector),
     )
 
 
@@ -134,50 +140,94 @@ def _sector(mesh: Discretization, bond: Array) -> Sector:
     return Sector(model)
 
 
+@dataclass(frozen=True, eq=False)
+class _Foot:
+    """How a drop stands on its substrate.
+
+    Attributes
+    ----------
+    pancake : free surface of the start (dimensionless); lift : height of its rim.
+    line : what the contact line costs; support : on what it slides.
+    """
+
+    pancake: Pancake
+    lift: float
+    line: LineTerm
+    support: Sliding
+
+
+def _frame(substrate: Plane | Sphere) -> tuple[tuple[float, float, float], Array]:
+    """Origin and axes of the scene: on the plane, or at the top of the sphere."""
+    if isinstance(substrate, Plane):
+        return substrate.point, substrate.axes()
+    x, y, z = substrate.center
+    return (x, y, z + substrate.radius), np.eye(3)
+
+
+def _foot(substrate: Plane | Sphere, liquid: Liquid, length: float, bond: float) -> _Foot:
+    gamma, angle, unit = liquid.surface_tension, substrate.contact_angle, 4.0 * np.pi / 3.0
+    if isinstance(substrate, Plane):
+        pancake = least_energy_pancake(angle, bond, unit)
+        return _Foot(pancake, 0.0, PlaneContactLine(gamma, angle), Sliding("xi2=0"))
+    radius = substrate.radius / length
+    polar, cap = drop_on_sphere(angle, radius, unit)
+    line = SphereContactLine(gamma, substrate)
+    lift = -2.0 * radius * np.sin(0.5 * polar) ** 2
+    return _Foot(cap, float(lift), line, Sliding("xi2=0", substrate))
+
+
 def _grading(contact_angle: float, bond: float, length: float) -> Grading:
     """Shorter steps near the rim: for the capillary length, and for a foot nearly tangent to the
-    plane. The constants balance the errors of height and rim over the whole family."""
+    substrate. The constants balance the errors of height and rim over the whole family."""
     if bond == 0:
         return Grading()  # a circular arc has no layer
     first = min(1.0, 3.5 / (np.sqrt(bond) * length))
     if contact_angle > 90:
-        first = min(first, max(np.sin(np.radians(contact_angle)) ** 0.5, 0.02))
+        first = min(first, max(np.sin(np.radians(contact_angle)), 4e-4) ** 0.5)
     return Grading(float(first))
 
 
-def _start(
-    pancake: Pancake, mesh: Discretization, grading: Grading, angle: float, scale: Scale
-) -> Surface:
+def _start(foot: _Foot, mesh: Discretization, grading: Grading, scale: Scale) -> Surface:
+    pancake = foot.pancake
+
     def profile(t: Array) -> tuple[Array, Array, Array]:
         r, z = pancake(grading.fraction(t))
         return r, z, -pancake.length * grading.slope(t)
 
-    space = drop_space(mesh.space, mesh.degree, mesh.elements, angle=angle)
+    space = drop_space(mesh.space, mesh.degree, mesh.elements, angle=pancake.turn)
     local = axisymmetric(space, profile)
-    return local.moved(scale.to_world(local.points))
+    return local.moved(scale.to_world(local.points + [0.0, 0.0, foot.lift]))
 
 
-def _check_above(start: Surface, substrate: Plane) -> None:
+def _check_above(start: Surface, substrate: Plane | Sphere) -> None:
     table = start.space.table(2)
     depth = -float(substrate.gap(start.on(table).position).min())
-    if depth > 1e-9 * start.size:
+    if depth > 1e-6 * start.size:
         raise SceneError(
-            f"start: the surface lies up to {depth:g} below the substrate (its plane, solid 0); "
-            f"lift it by at least {depth:g} along the plane's normal"
+            f"start: the surface lies up to {depth:g} below the substrate (solid 0); lift it by at "
+            f"least {depth:g} along the solid's normal"
         )
 
 
-def _hints(angle: float) -> tuple[str, ...]:
+def _hints(substrate: Plane | Sphere, bond: Array, sector: Sector) -> tuple[str, ...]:
+    texts = []
+    angle = substrate.contact_angle
     if angle <= np.pi:
-        return (
+        texts.append(
             f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
-            "angles are in degrees through the liquid",
+            "angles are in degrees through the liquid"
         )
-    return ()
+    if isinstance(substrate, Sphere) and sector.model in ("quarter", "eighth"):
+        texts.append(
+            "a drop on a smooth sphere "
+            + ("slides off it" if bond.any() else "rolls on it freely")
+            + f": that motion is not in the {sector.model} model, whose stability is judged"
+        )
+    return tuple(texts)
 
 
 def _describe(
-    substrate: Plane,
+    substrate: Plane | Sphere,
     volume: float,
     liquid: Liquid,
     acceleration: Array,
@@ -187,10 +237,6 @@ def _describe(
 ) -> dict[str, Any]:
     """The scene by the names of the scene file."""
     size = float(np.linalg.norm(acceleration))
-    standard = Plane(substrate.contact_angle)
-    placed = {} if substrate == standard else {
-        "point": list(substrate.point), "normal": list(substrate.normal)
-    }  # fmt: skip
     direction = acceleration / size if size else np.array([0.0, 0.0, -1.0])
     return {
         "scene": "sessile_droplet",
@@ -200,7 +246,7 @@ def _describe(
             "volume": volume,
         },
         "gravity": {"acceleration": size, "direction": [float(d) for d in direction]},
-        "substrate": {"kind": "plane", "contact_angle": substrate.contact_angle} | placed,
+        "substrate": _describe_substrate(substrate),
         "droplet": {"hold": hold},
         "discretization": {
             "space": mesh.space,
@@ -209,3 +255,19 @@ def _describe(
             "model": sector.model,
         },
     }
+
+
+def _describe_substrate(substrate: Plane | Sphere) -> dict[str, Any]:
+    angle = substrate.contact_angle
+    if isinstance(substrate, Sphere):
+        size: dict[str, Any] = {
+            "kind": "sphere",
+            "contact_angle": angle,
+            "radius": substrate.radius,
+        }
+        top = substrate.center == (0.0, 0.0, -substrate.radius)
+        return size if top else size | {"center": list(substrate.center)}
+    plane: dict[str, Any] = {"kind": "plane", "contact_angle": angle}
+    if substrate == Plane(angle):
+        return plane
+    return plane | {"point": list(substrate.point), "normal": list(substrate.normal)}

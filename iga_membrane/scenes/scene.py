@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError
-from ..solids.plane import Plane
+from ..solids import Plane, Sphere
 from ..splines import Grading
 from ..surface.supports import Sector, Sliding, Support
 from ..surface.surface import Surface
@@ -66,7 +66,7 @@ class Scene:
     scale: Scale | None = None
     grading: Grading = field(default_factory=Grading)
     ramp: Ramp | None = field(default=None, repr=False)
-    substrate: Plane | None = None
+    substrate: Plane | Sphere | None = None
     hold: str = ""
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)

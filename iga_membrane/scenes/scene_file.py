@@ -13,7 +13,7 @@ import numpy as np
 
 from ..checks import choice, integer, number, suggestion, vector
 from ..errors import SceneError
-from ..solids.plane import Plane
+from ..solids import Plane, Sphere
 from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
 from .liquid import MODELS, Discretization, Liquid
@@ -147,23 +147,36 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
         if field.split(".")[1] not in table:
             raise SceneError(f"{field}: missing; a sessile droplet needs it")
-    kind = choice("substrate.kind", substrate.get("kind", "plane"), SUBSTRATES)
-    if kind != "plane":
-        raise _later(f'substrate.kind = "{kind}"')
-    for key in substrate:
-        if key not in ("kind", "contact_angle"):
-            raise SceneError(
-                f"substrate.{key}: a plane has no such field; remove it or choose another "
-                f"substrate.kind ({', '.join(SUBSTRATES[1:])})"
-            )
     return sessile_droplet(
-        Plane(substrate["contact_angle"]),
+        _substrate(substrate),
         volume=liquid["volume"],
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
         gravity=_gravity(tables["gravity"]),
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
     )
+
+
+def _substrate(table: Mapping[str, Any]) -> Plane | Sphere:
+    """The solid under a droplet; a sphere has its top at the origin."""
+    kind = choice("substrate.kind", table.get("kind", "plane"), SUBSTRATES)
+    if kind not in _SUBSTRATE_KEYS:
+        raise _later(f'substrate.kind = "{kind}"')
+    allowed = _SUBSTRATE_KEYS[kind]
+    for key in table:
+        if key != "kind" and key not in allowed:
+            raise SceneError(
+                f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
+                f"it or choose another substrate.kind ({', '.join(SUBSTRATES)})"
+            )
+    if kind == "plane":
+        return Plane(table["contact_angle"])
+    if "radius" not in table:
+        raise SceneError("substrate.radius: missing; a sphere needs it")
+    return Sphere(table["contact_angle"], table["radius"], (0.0, 0.0, -table["radius"]))
+
+
+_SUBSTRATE_KEYS = {"plane": ("contact_angle",), "sphere": ("contact_angle", "radius")}
 
 
 def _film(data: Mapping[str, Any], tables: Tables) -> Scene:

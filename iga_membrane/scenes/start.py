@@ -88,3 +88,31 @@ def least_energy_pancake(contact_angle: float, bond: float, volume: float) -> Pa
             flat = float(flats[k, 0] * radius[k])
             best = (energy[k], Pancake(flat, float(radius[k]), float(aspect), float(turn)))
     return best[1]
+
+
+def drop_on_sphere(contact_angle: float, radius: float, volume: float) -> tuple[float, Pancake]:
+    """Drop without gravity on top of a sphere: the exact spherical cap.
+
+    Parameters
+    ----------
+    radius : of the solid sphere, whose top is the origin.
+
+    Returns
+    -------
+    polar : angle of the contact line from the sphere's top.
+    cap : the free surface above the height of the contact line.
+    """
+    theta = np.radians(contact_angle)
+
+    def drop(polar: float) -> tuple[float, Pancake]:
+        turn = theta + polar
+        free = radius * np.sin(polar) / np.sin(turn)
+        above = np.pi * free**3 * (2 + np.cos(turn)) * (1 - np.cos(turn)) ** 2 / 3
+        solid = np.pi * radius**3 * (2 + np.cos(polar)) * (1 - np.cos(polar)) ** 2 / 3
+        return above - solid, Pancake(0.0, free, 1.0, turn)
+
+    low, high = 0.0, np.pi - theta
+    for _ in range(200):
+        polar = 0.5 * (low + high)
+        low, high = (polar, high) if drop(polar)[0] < volume else (low, polar)
+    return polar, drop(polar)[1]

@@ -122,6 +122,11 @@ class Assembly:
         """Number of multipliers: of the constraints, then of the edges held on solids."""
         return len(self._held) + int(self.spines.held.max(initial=-1)) + 1
 
+    def line_load(self, multipliers: Array) -> Array:
+        """(count,) coefficients of the load with which a curved solid holds its edge."""
+        loads = np.append(multipliers[len(self._held) :], 0.0)
+        return loads[self.spines.held[self.spines.second]]
+
     @property
     def body(self) -> BodyDensity:
         """Sum of the body densities that are not constraints."""
@@ -140,6 +145,12 @@ class Assembly:
         total, constraints = self._values(points, at)
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
+
+    def body_integral(self, surface: Surface, density: BodyDensity) -> float:
+        """Integral of a density over the liquid of one sector, its part under the foot included."""
+        points = surface.points
+        _, (flux,) = vary.energies(self.table, vary.element_points(self.table, points), [density])
+        return float(flux + sum(t.energy(edge, points, 0.0, density) for t, edge in self.lines))
 
     def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
         area, integrals = vary.energies(self.table, at, [self.body, *self._held])
@@ -224,9 +235,9 @@ class Assembly:
             self._add_edge(
                 matrix, directions, edge, term.hessian(edge, points, term.strength, body)
             )
-        loads = np.append(multipliers[len(self._held) :], 0.0)
+        loads = self.line_load(multipliers)
         for gap, edge in self._gaps:
-            load = -loads[self._held_numbers(edge)]
+            load = -loads[edge.functions]
             self._add_edge(matrix, directions, edge, gap.hessian(edge, points, load))
         return matrix
 

@@ -12,13 +12,14 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
+from ..solids import Sphere
 from ..surface.motion import Motion
 from ..surface.ring import rational_matrix
 from ..surface.sector import sector_elements
-from ..surface.supports import Sector, Sliding
+from ..surface.supports import Sector
 from ..surface.surface import Surface
-from ..terms import BodyDensity, PlaneContactLine, SurfaceTension, Volume
-from .measures import contact_line, vertical_forces
+from ..terms import BodyDensity, LineTerm, SurfaceTension, Term, Volume
+from .measures import ContactLine, contact_line, sphere_of, vertical_forces
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Audit:
         tells how well the line is resolved.
     angle : mean cosine of the measured contact angle minus that of Young's.
     penetration : depth below the plane over the scene's length, on a sampling four times denser
-        than the quadrature.
+        than the quadrature; on a sphere, distance of the line from it.
     """
 
     residual: float
@@ -47,7 +48,12 @@ class Audit:
 
 
 def audit(
-    scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, points: tuple[int, int]
+    scene: Scene,
+    surface: Surface,
+    motion: Motion,
+    body: BodyDensity,
+    line_load: Array,
+    points: tuple[int, int],
 ) -> Audit:
     """Check a state.
 
@@ -56,6 +62,7 @@ def audit(
     surface : in the scene's scale.
     motion : the directions in which the residual is tested.
     body : body density of the Lagrangian, so minus the pressure.
+    line_load : (count,) coefficients of the load with which a curved solid holds its edge.
     points : the solver's Gauss points in each direction.
     """
     space, sector = surface.space, scene.sector
@@ -74,37 +81,59 @@ def audit(
     )
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     _scatter(total, absolute, motion, table.functions, force)
-    lines = [t for t in terms if isinstance(t, PlaneContactLine)]
+    lines = [t for t in terms if isinstance(t, LineTerm)]
+    solid = sphere_of(scene)
     ring = np.arange(space.bases[0].elements // sector.copies)
     for term in lines:
         edge = space.edge_table(term.edge, 2 * points[0], ring)
         tangent = edge.d @ surface.points[edge.functions]
-        outward = np.stack([tangent[..., 1], -tangent[..., 0], 0 * tangent[..., 0]], axis=-1)
-        pull = edge.values.transpose(0, 2, 1) @ (term.strength * edge.weights[..., None] * outward)
+        x = edge.values @ surface.points[edge.functions]
+        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if solid is None else solid.normal(x)
+        outward = np.cross(tangent, up)
+        # the reaction along the solid's normal carries the load and the flux of Q e_z at the edge
+        load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
+        level = 0.5 * (_density(body, x) + body.constant) * x[..., 2]
+        density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
+        pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
         _scatter(total, absolute, motion, edge.functions, pull)
     residual = float(np.linalg.norm(total[:-1]) / np.linalg.norm(absolute[:-1]))
     inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
-    held = next((t for t in terms if isinstance(t, Volume)), None)
-    missing = abs(inside - held.target) / held.value if held else 0.0
     if not lines:
-        return Audit(residual, missing)
-    line = contact_line(surface, lines[0].edge, 2 * points[0])
-    forces = vertical_forces(line, body, tension, lines[0].contact_angle)
+        return Audit(residual, _missing(terms, inside))
+    line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
+    cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
+    if solid is not None:
+        inside += _under_cap(line, solid)
+        rounds = float(np.abs(solid.gap(line.position)).max())
+        return Audit(residual, _missing(terms, inside), angle=cosine, penetration=rounds)
+    angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
+    forces = vertical_forces(line, body, tension, float(angle))
     weight = body.gradient[2] * inside
     scale = abs(forces.push) + abs(forces.line) + abs(weight)
-    cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum())
-    depth = 0.0
-    if any(isinstance(s, Sliding) for s in scene.supports):
-        depth = max(0.0, -_lowest(surface, points, sector))
-    young = float(np.cos(np.radians(lines[0].contact_angle)))
     return Audit(
         residual,
-        missing,
+        _missing(terms, inside),
         force=abs(forces.push - forces.line - weight) / scale,
         line=abs(forces.push - forces.measured - weight) / scale,
-        angle=cosine - young,
-        penetration=depth,
+        angle=cosine,
+        penetration=max(0.0, -_lowest(surface, points, sector)),
     )
+
+
+def _missing(terms: tuple[Term, ...], inside: float) -> float:
+    """Relative error of a prescribed volume."""
+    held = next((t for t in terms if isinstance(t, Volume)), None)
+    return abs(inside - held.target) / held.value if held else 0.0
+
+
+def _under_cap(line: ContactLine, solid: Sphere) -> float:
+    """Flux of ``z e_z`` out of the liquid through the wetted cap, from its mean polar angle."""
+    away = line.position - np.array(solid.center)
+    turn = (away[:, 0] * line.tangent[:, 1] - away[:, 1] * line.tangent[:, 0]) * line.arc
+    t = away[:, 2] / np.linalg.norm(away, axis=1)
+    r, c = solid.radius, solid.center[2]
+    cap = -(r**2) * (c * (1 - t**2) / 2 + r * (1 - t**3) / 3)
+    return float((cap / (away[:, 0] ** 2 + away[:, 1] ** 2)) @ turn)
 
 
 def _density(body: BodyDensity, x: Array) -> Array:

@@ -8,10 +8,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
+from ..solids import Sphere
 from ..splines.quadrature import gauss
 from ..splines.space import EDGES
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Gravity, Scale, SurfaceTension, Volume
+from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
 from ..terms import variations as vary
 from .assembly import Assembly
 
@@ -24,7 +25,7 @@ class ContactLine:
     ----------
     position, tangent, conormal : (k, 3); unit tangent ``a_c`` along the edge's parameter, unit
         conormal tangent to the membrane and out of it.
-    angle : (k,) between membrane and plane through the liquid, radians.
+    angle : (k,) between membrane and solid through the liquid, radians.
     arc : (k,) quadrature weights of arc length.
     """
 
@@ -35,8 +36,18 @@ class ContactLine:
     arc: Array
 
 
-def contact_line(surface: Surface, edge: str = "xi2=0", points: int | None = None) -> ContactLine:
-    """Line geometry from exact spline tangents (paper eq. 33), on the plane z = 0."""
+def contact_line(
+    surface: Surface,
+    edge: str = "xi2=0",
+    points: int | None = None,
+    solid: Sphere | None = None,
+) -> ContactLine:
+    """Line geometry from exact spline tangents (paper eqs 33-34).
+
+    Parameters
+    ----------
+    solid : what the edge lies on; None is the plane z = 0.
+    """
     space = surface.space
     along, end = EDGES[edge]
     basis = space.bases[along]
@@ -52,8 +63,10 @@ def contact_line(surface: Surface, edge: str = "xi2=0", points: int | None = Non
     # out of the membrane: against the other tangent at its start, along it at its end
     across = np.einsum("ki,ki->k", conormal, k.tangents[:, 1 - along])
     conormal = np.where(((across > 0) == (end == 0))[:, None], -conormal, conormal)
-    # atan2 keeps its digits where the membrane is nearly tangent to the plane
-    angle = np.arctan2(np.linalg.norm(k.normal[:, :2], axis=1), k.normal[:, 2])
+    up = np.array([[0.0, 0.0, 1.0]]) if solid is None else solid.normal(k.position)
+    # atan2 keeps its digits where the membrane is nearly tangent to the solid
+    tilt = np.linalg.norm(np.cross(k.normal, up), axis=1)
+    angle = np.arctan2(tilt, np.einsum("ki,ki->k", k.normal, np.broadcast_to(up, k.normal.shape)))
     weights = speed * (basis.sizes[:, None] * w).ravel()
     return ContactLine(k.position, tangent, conormal, angle, weights)
 
@@ -110,7 +123,7 @@ def measures(
     ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
     values["volume"] = volume(assembly, surface) * scale.length**3 + ends
     if scene.kind == "sessile_droplet":
-        values |= _droplet(surface, values["A_wet"], body, scale)
+        values |= _droplet(scene, surface, values["A_wet"], body, scale)
     elif scene.kind == "film_between_rings":
         values |= _film(surface, body, scale)
         values["volume"] = values.pop("volume") - ends + _under_rings(surface) * scale.length**3
@@ -123,15 +136,16 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
     at = vary.element_points(table, surface.points)
     local = scene.local_terms()
     gravity = sum((t.density() for t in local if isinstance(t, Gravity)), BodyDensity())
-    area, (weight,) = vary.energies(table, at, [gravity])
+    area, _ = vary.energies(table, at, [])
+    weight = assembly.body_integral(surface, gravity)
     tension = sum(t.gamma for t in local if isinstance(t, SurfaceTension))
     none = BodyDensity()
     lines = sum(t.energy(edge, surface.points, t.strength, none) for t, edge in assembly.lines)
     wet = sum(t.energy(edge, surface.points, 1.0, none) for t, edge in assembly.lines)
     e_surf = copies * (tension * area + lines) * scale.energy
-    e_grav = copies * float(weight) * scale.energy + _world_weight(scene, assembly, surface)
+    e_grav = copies * weight * scale.energy + _world_weight(scene, assembly, surface)
     total = copies * assembly.energies(surface).total * scale.energy + (
-        e_grav - copies * float(weight) * scale.energy
+        e_grav - copies * weight * scale.energy
     )
     return {
         "energy": total,
@@ -144,9 +158,7 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
 
 def volume(assembly: Assembly, surface: Surface) -> float:
     """Liquid volume of the full body in the scene's scale, as the flux of ``z e_z``."""
-    at = vary.element_points(assembly.table, surface.points)
-    _, (inside,) = vary.energies(assembly.table, at, [BodyDensity(1.0)])
-    return float(assembly.copies * inside)
+    return assembly.copies * assembly.body_integral(surface, BodyDensity(1.0))
 
 
 def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
@@ -163,21 +175,43 @@ def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     return float(-inside * sum(pull, np.zeros(3)) @ origin)
 
 
-def _droplet(surface: Surface, wet: float, body: BodyDensity, scale: Scale) -> dict[str, float]:
-    """Heights, radii and angle of a drop on a plane."""
-    net = surface.net
-    apex = net[0, -1]
-    line = contact_line(surface)
-    p_base = -body.constant * scale.pressure
-    at_apex = -(body.constant + float(np.dot(body.gradient, apex))) * scale.pressure
-    return {
+def _droplet(
+    scene: Scene, surface: Surface, wet: float, body: BodyDensity, scale: Scale
+) -> dict[str, float]:
+    """Heights, radii and angle of a drop on a plane or on a sphere."""
+    apex = surface.net[0, -1]
+    solid = sphere_of(scene)
+    line = contact_line(surface, solid=solid)
+    length = float(line.arc.sum())
+
+    def pressure(z: float) -> float:
+        return -(body.constant + body.gradient[2] * z) * scale.pressure
+
+    values = {
         "height": float(apex[2]) * scale.length,
         "equator_radius": _equator(surface) * scale.length,
-        "contact_radius": float(np.sqrt(wet / np.pi)),
-        "p_base": p_base,
-        "p_apex": at_apex,
-        "contact_angle_measured": float(np.degrees(line.angle @ line.arc / line.arc.sum())),
+        "p_apex": -(body.constant + float(np.dot(body.gradient, apex))) * scale.pressure,
+        "contact_angle_measured": float(np.degrees(line.angle @ line.arc / length)),
     }
+    if solid is None:
+        return values | {"contact_radius": float(np.sqrt(wet / np.pi)), "p_base": pressure(0.0)}
+    # the wetted cap's area gives its mean polar angle: 1 - cos = A / (2 pi r^2)
+    share = wet / scale.length**2 / (2.0 * np.pi * solid.radius**2)
+    polar = 2.0 * np.arcsin(np.sqrt(0.5 * share))
+    depth = -solid.radius * share
+    return values | {
+        "alpha_deg": float(np.degrees(polar)),
+        "contact_radius": solid.radius * float(np.sin(polar)) * scale.length,
+        "z_contact": depth * scale.length,
+        "p_contact": pressure(depth),
+        "p_top": pressure(0.0),
+    }
+
+
+def sphere_of(scene: Scene) -> Sphere | None:
+    """The sphere on which the membrane's line lies, in the scene's scale."""
+    lines = (t for t in scene.local_terms() if isinstance(t, SphereContactLine))
+    return next((t.sphere for t in lines), None)
 
 
 def _film(surface: Surface, body: BodyDensity, scale: Scale) -> dict[str, float]:

@@ -27,8 +27,6 @@ POLISHED = 1e-6
 """Distortion that a last walk leaves alone."""
 DISTORTED = 0.2
 """Distortion that is mended at once, also while steps are large."""
-NEAR = 1e-3
-"""Relative residual below which an unstable equilibrium is approached, not fled."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -43,6 +41,7 @@ class NewtonOptions:
     tolerance : the last step's largest displacement.
     step_limit : largest displacement of a control point in one step.
     polish_below : steps smaller than this are followed by a last walk by arc length.
+    near : relative residual below which an unstable equilibrium is approached, not fled.
     deadline : CPU time (``process_time``) after which to stop.
     """
 
@@ -50,6 +49,7 @@ class NewtonOptions:
     tolerance: float = 1e-8
     step_limit: float = 0.25
     polish_below: float = 1e-3
+    near: float = 1e-3
     deadline: float = float("inf")
 
 
@@ -140,11 +140,11 @@ def _iterate(
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
         if not np.isfinite(residual):
             raise _Stop(Status.NONFINITE, "the residual is not finite")
-        flee = flee or (approached is not None and residual > approached)
+        flee = flee or (approached is not None and residual > approached and options.near < 1.0)
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
         before = process_time()
-        direction = _direction(system, plain=residual <= NEAR and not flee)
+        direction = _direction(system, plain=residual <= options.near and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None

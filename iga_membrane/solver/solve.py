@@ -13,9 +13,10 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
+from ..solids import Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Centroid, PlaneContactLine, Volume
+from ..terms import BodyDensity, Centroid, LineTerm, PlaneContactLine, SphereContactLine, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
 from .linear import SingularMatrix
@@ -132,18 +133,33 @@ def _iterate(
     options: SolverOptions,
     report: Callable[[float], None],
 ) -> _Outcome:
-    """Direct Newton, then load stepping where it failed or ended on a saddle."""
-    direct = newton(assembly, scene.local_surface(), None, _grading(scene), settings)
+    """Direct Newton; load stepping where it failed or ended on a saddle; at last the nearest
+    equilibrium of any kind, to tell an unstable state from none."""
+    start, grading = scene.local_surface(), _grading(scene)
+    direct = newton(assembly, start, None, grading, settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
-    failed = direct.status is not None or direct.index > 0
-    if not failed or scene.ramp is None or direct.status is Status.INTERRUPTED:
+    if direct.status is Status.INTERRUPTED or (direct.status is None and direct.index <= 0):
         return _Outcome(scene, direct, steps)
-    log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
-    path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
-    path.result.linear_seconds += direct.linear_seconds
-    if path.result.status is None or (path.last_good > 0 and direct.status is not None):
-        return _Outcome(path.scene, path.result, steps + path.steps, path.bracket)
-    return _Outcome(scene, direct, steps + path.steps)
+    outcome = _Outcome(scene, direct, steps)
+    if scene.ramp is not None:
+        log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
+        path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
+        path.result.linear_seconds += direct.linear_seconds
+        steps = steps + path.steps
+        if path.result.status is None:
+            return _Outcome(path.scene, path.result, steps)
+        partial = path.last_good > 0 and direct.status is not None
+        outcome = _Outcome(scene, direct, steps)
+        if partial:
+            outcome = _Outcome(path.scene, path.result, steps, path.bracket)
+    if direct.status is not None and outcome.bracket is None:
+        assembly.load(scene)
+        nearest = newton(assembly, start, None, grading, replace(settings, near=np.inf))
+        steps = [*steps, LoadStep(1.0, len(nearest.iterations), nearest.status)]
+        if nearest.status is None:
+            return _Outcome(scene, nearest, steps)
+        outcome = replace(outcome, steps=steps)
+    return outcome
 
 
 def _grading(scene: Scene) -> Grading | None:
@@ -166,7 +182,8 @@ def _conclude(
             status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
     if status is None and options.audit:
         body = assembly.density(multipliers)
-        checked = audit(scene, surface, motion, body, assembly.points)
+        load = assembly.line_load(multipliers)
+        checked = audit(scene, surface, motion, body, load, assembly.points)
     hold = _hold_force(scene, assembly, surface, multipliers)
     if status is None:
         assert verdict is not None
@@ -230,7 +247,7 @@ def _judge(
             'against it; hold the centroid (droplet.hold = "xy") or level the plane'
         )
     if checked is not None:
-        found = _defect(checked)
+        found = _defect(checked, isinstance(scene.substrate, Sphere))
         if found is not None:
             return found
     if verdict.index > 0 and verdict.smallest < 0:
@@ -248,10 +265,10 @@ def _judge(
     return Status.CONVERGED_STABLE, "converged, audited and stable"
 
 
-def _defect(checked: Audit) -> tuple[Status, str] | None:
+def _defect(checked: Audit, curved: bool) -> tuple[Status, str] | None:
     """The audit's objection, or None."""
     limit = TOLERANCE
-    if checked.penetration > limit.penetration:
+    if checked.penetration > (1e-2 if curved else limit.penetration):
         return Status.PENETRATION, (
             f"the membrane lies up to {checked.penetration:.1e} lengths below the substrate"
         )
@@ -274,8 +291,11 @@ def _contact(
     scene: Scene, surface: Surface, body: BodyDensity, checked: Audit | None
 ) -> dict[str, float]:
     """Contact with the substrate, by the names of the result file."""
-    line = next((t for t in scene.local_terms() if isinstance(t, PlaneContactLine)), None)
-    if line is None:
+    line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
+    if isinstance(line, SphereContactLine):
+        off = checked.penetration if checked else 0.0
+        return {"wet_solids": 1, "max_penetration": off * scene.units.length}
+    if not isinstance(line, PlaneContactLine):
         return {}
     scale = scene.units
     forces = vertical_forces(contact_line(surface, line.edge), body, line.gamma, line.contact_angle)

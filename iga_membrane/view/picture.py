@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..errors import OutputError
+from ..solids import Sphere
 from ..solver.measures import contact_line
 
 if TYPE_CHECKING:
@@ -159,10 +160,14 @@ def _range(values: Any, unit: float) -> tuple[float, float]:
 
 
 def _substrate(plotter: Any, pv: Any, solution: Solution) -> None:
-    if solution.scene.substrate is None:
+    substrate, scale = solution.scene.substrate, solution.scene.units
+    if isinstance(substrate, Sphere):
+        solid = pv.Sphere(substrate.radius, substrate.center, theta_resolution=120,
+                          phi_resolution=120)  # fmt: skip
+    elif substrate is not None:
+        span = 3.0 * float(np.abs(_local(solution)[:, :2]).max())
+        solid = pv.Plane(center=(0.0, 0.0, -1e-3), i_size=span, j_size=span)
+        solid.points = scale.to_world(np.asarray(solid.points, float))
+    else:
         return
-    scale = solution.scene.units
-    span = 3.0 * float(np.abs(_local(solution)[:, :2]).max())
-    sheet = pv.Plane(center=(0.0, 0.0, -1e-3), i_size=span, j_size=span)
-    sheet.points = scale.to_world(np.asarray(sheet.points, float))
-    plotter.add_mesh(sheet, color="#d9d2c5", ambient=0.3)
+    plotter.add_mesh(solid, color="#d9d2c5", ambient=0.3, smooth_shading=True)

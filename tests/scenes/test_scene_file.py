@@ -133,7 +133,8 @@ def test_misspelt_keys_are_refused(path, said):
 @pytest.mark.parametrize(
     ("path", "value", "said"),
     [
-        ("substrate.kind", "sphere", 'substrate.kind = "sphere": not available yet'),
+        ("substrate.kind", "spheres", 'substrate.kind = "spheres": not available yet'),
+        ("substrate.kind", "sphere", "substrate.radius: missing"),
         ("scene", "liquid_sheet", 'scene = "liquid_sheet": not available yet'),
         ("particle", [{"radius": 1.0}], "[[particle]]: not available yet"),
         ("solver.contact", "penalty", "not available yet"),
