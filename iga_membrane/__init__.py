@@ -30,6 +30,7 @@ _HOME = {
     "scenes.scene": ("Scene",),
     "scenes.droplet": ("sessile_droplet",),
     "scenes.film": ("film_between_rings",),
+    "scenes.sheet": ("liquid_sheet",),
     "scenes.scene_file": ("load_scene", "read_scene"),
     "solver.options": ("SolverOptions",),
     "solver.status": ("Status",),

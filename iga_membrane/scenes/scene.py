@@ -55,6 +55,7 @@ class Scene:
     ramp : the way to this scene if a direct solve fails.
     substrate : the solid that a sliding edge touches, for the audit and for pictures.
     hold : axes along which the user asked for the centroid to be held.
+    particle_pull : acceleration along -z that weighs a particle.
     kind : name of the family, which decides the measures of a solution.
     description : the scene in words of the scene file, for the result.
     warnings : what a user should know about the input.
@@ -68,6 +69,7 @@ class Scene:
     ramp: Ramp | None = field(default=None, repr=False)
     substrate: Plane | Sphere | None = None
     hold: str = ""
+    particle_pull: float = 0.0
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     warnings: Sequence[str] = ()

@@ -20,11 +20,13 @@ class Sphere:
     contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180.
     radius : > 0.
     center : its centre.
+    density : of the solid, >= 0; the weight of a particle.
     """
 
     contact_angle: float
     radius: float
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    density: float = 0.0
 
     def __post_init__(self) -> None:
         angle = contact_angle("substrate.contact_angle", self.contact_angle)
@@ -32,6 +34,7 @@ class Sphere:
         radius = number("substrate.radius", self.radius, above=0.0)
         object.__setattr__(self, "radius", radius)
         object.__setattr__(self, "center", vector("substrate.center", self.center))
+        number("particle.density", self.density, least=0.0)
 
     def offset(self, points: ArrayLike) -> tuple[Array, Array]:
         """Vectors from the centre to points (..., 3) and their lengths."""

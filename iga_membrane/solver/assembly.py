@@ -152,6 +152,15 @@ class Assembly:
         _, (flux,) = vary.energies(self.table, vary.element_points(self.table, points), [density])
         return float(flux + sum(t.energy(edge, points, 0.0, density) for t, edge in self.lines))
 
+    def gap_force(self, surface: Surface, multipliers: Array) -> float:
+        """Vertical force of the line loads on their solids (one sector)."""
+        loads = self.line_load(multipliers)
+        total = 0.0
+        for gap, edge in self._gaps:
+            push = gap.gradients(edge, surface.points)[..., 2].sum(axis=2)
+            total -= float((loads[edge.functions] * push).sum())
+        return total
+
     def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
         area, integrals = vary.energies(self.table, at, [self.body, *self._held])
         integrals[0] += self._tension * area

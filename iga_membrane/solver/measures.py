@@ -14,6 +14,7 @@ from ..splines.space import EDGES
 from ..surface.surface import Surface
 from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
 from ..terms import variations as vary
+from ..terms.contact_line import wetted_area
 from .assembly import Assembly
 
 
@@ -127,6 +128,9 @@ def measures(
     elif scene.kind == "film_between_rings":
         values |= _film(surface, body, scale)
         values["volume"] = values.pop("volume") - ends + _under_rings(surface) * scale.length**3
+    elif scene.kind == "liquid_sheet":
+        values["V_liq"] = values.pop("volume") - ends
+        values |= _sheet(scene, assembly, surface, multipliers)
     return {name: float(value) for name, value in values.items()}
 
 
@@ -206,6 +210,51 @@ def _droplet(
         "p_contact": pressure(depth),
         "p_top": pressure(0.0),
     }
+
+
+def _sheet(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> dict[str, float]:
+    """Contact on the particle and the vertical forces of sheet and liquid on it."""
+    scale, solid = scene.units, sphere_of(scene)
+    assert solid is not None
+    term, edge = assembly.lines[0]
+    wet = assembly.copies * term.energy(edge, surface.points, 1.0, BodyDensity())
+    share = wet / (2.0 * np.pi * solid.radius**2)
+    polar = 2.0 * float(np.arcsin(np.sqrt(0.5 * share)))
+    height = solid.radius * share
+    total, push = vertical_pull(assembly, surface, multipliers)
+    line = contact_line(surface, solid=solid)
+    return {
+        "phi_deg": float(np.degrees(polar)),
+        "psi_deg": 180.0 - float(np.degrees(np.arccos(-term.strength / term.gamma) + polar)),
+        "contact_radius": solid.radius * float(np.sin(polar)) * scale.length,
+        "cap_height": height * scale.length,
+        "z_contact": (solid.center[2] + solid.radius - height) * scale.length,
+        "V_cap": np.pi * height**2 * (solid.radius - height / 3.0) * scale.length**3,
+        "F_total": total * scale.force,
+        "F_P": push * scale.force,
+        "F_CL": (total - push) * scale.force,
+        "F_CL_line": -float(line.conormal[:, 2] @ line.arc) * term.gamma * scale.force,
+        "contact_angle_measured": float(np.degrees(line.angle @ line.arc / line.arc.sum())),
+    }
+
+
+def vertical_pull(assembly: Assembly, surface: Surface, multipliers: Array) -> tuple[float, float]:
+    """Upward force on the sphere and the pressure's part of it (dimensionless, full body).
+
+    The force is ``-dE/dz`` of the sphere at fixed control points, the line held by its load: it
+    converges like the energy. With ``e`` the body density, so minus the pressure, the pressure's
+    part is ``int_W e N_z dA = e_0 A_projected + e_z int_W z N_z dA``.
+    """
+    (term, edge), body = assembly.lines[0], assembly.density(multipliers)
+    points = surface.points
+    projected = wetted_area(edge, points)
+    moment = -term.energy(edge, points, 0.0, BodyDensity(1.0))
+    push = body.constant * projected + body.gradient[2] * moment
+    lift = float(term.forces(edge, points, term.strength, body)[..., 2].sum())
+    held = assembly.gap_force(surface, multipliers)
+    return assembly.copies * (lift + push + held), assembly.copies * push
 
 
 def sphere_of(scene: Scene) -> Sphere | None:

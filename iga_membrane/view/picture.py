@@ -162,8 +162,12 @@ def _range(values: Any, unit: float) -> tuple[float, float]:
 def _substrate(plotter: Any, pv: Any, solution: Solution) -> None:
     substrate, scale = solution.scene.substrate, solution.scene.units
     if isinstance(substrate, Sphere):
-        solid = pv.Sphere(substrate.radius, substrate.center, theta_resolution=120,
-                          phi_resolution=120)  # fmt: skip
+        solid = pv.Sphere(
+            radius=substrate.radius,
+            center=substrate.center,
+            theta_resolution=120,
+            phi_resolution=120,
+        )
     elif substrate is not None:
         span = 3.0 * float(np.abs(_local(solution)[:, :2]).max())
         solid = pv.Plane(center=(0.0, 0.0, -1e-3), i_size=span, j_size=span)
