@@ -45,7 +45,10 @@ def number(
         )
     if isinstance(value, bool) or not isinstance(value, Real):
         raise SceneError(f"{field} = {value!r}: {rule}; got {type(value).__name__}")
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
     if not (math.isfinite(result) and result > above and least <= result <= most):
         raise SceneError(f"{field} = {result!r}: {rule}")
     return result
@@ -87,6 +90,17 @@ def choice(field: str, value: Any, allowed: Iterable[str]) -> str:
 def contact_angle(field: str, value: Any) -> float:
     """Degrees through the liquid, 0 < angle <= 180."""
     return number(field, value, above=0.0, most=180.0, unit="degrees, through the liquid")
+
+
+def line_angle(field: str, value: Any) -> float:
+    """Contact angle at which there is a contact line."""
+    angle = contact_angle(field, value)
+    if angle == 180.0:
+        raise SceneError(
+            f"{field} = 180.0: not available yet in this version: at 180 degrees the foot is a "
+            "contact area without a contact line; give an angle < 180"
+        )
+    return angle
 
 
 def suggestion(word: Any, allowed: Iterable[str]) -> str:

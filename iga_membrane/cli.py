@@ -12,7 +12,7 @@ from pathlib import Path
 from time import process_time
 
 from . import __version__
-from .errors import OutputError, SceneError
+from .errors import GeometryError, OutputError, SceneError
 from .scenes.scene_file import load_scene
 from .solver.options import SolverOptions
 from .solver.solve import solve
@@ -28,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     try:
         return _solve(given)
-    except SceneError as error:
+    except (SceneError, GeometryError) as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_SCENE
     except OutputError as error:

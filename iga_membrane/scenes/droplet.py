@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number, vector
+from ..checks import choice, line_angle, number, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere
 from ..splines import Grading
@@ -68,23 +68,24 @@ def sessile_droplet(
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     acceleration = _acceleration(gravity)
-    if substrate.contact_angle == 180.0:
-        raise SceneError(
-            "substrate.contact_angle = 180.0: not available yet in this version: at 180 degrees "
-            "the foot is a contact area without a contact line; give an angle < 180"
-        )
+    line_angle("substrate.contact_angle", substrate.contact_angle)
     origin, axes = _frame(substrate)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
     bond = liquid.density * (acceleration @ axes) * length**2 / liquid.surface_tension
+    if not (np.isfinite(bond).all() and 0.0 < length**3 < np.inf):
+        raise SceneError(
+            f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "
+            "length leaves the range of floating point numbers; choose other units"
+        )
     sector = _sector(mesh, bond)
     foot = _foot(substrate, liquid, length, max(0.0, -float(bond[2])))
     grading = _grading(substrate.contact_angle, abs(float(bond[2])), foot.pancake.length)
     if start is None:
         start = _start(foot, mesh, grading, scale)
     else:
-        _check_above(start, substrate)
+        _check_start(start, mesh, substrate)
     terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume), foot.line]
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)
@@ -199,7 +200,14 @@ def _start(foot: _Foot, mesh: Discretization, grading: Grading, scale: Scale) ->
     return local.moved(scale.to_world(local.points + [0.0, 0.0, foot.lift]))
 
 
-def _check_above(start: Surface, substrate: Plane | Sphere) -> None:
+def _check_start(start: Surface, mesh: Discretization, substrate: Plane | Sphere) -> None:
+    asked = drop_space(mesh.space, mesh.degree, mesh.elements)
+    given = start.space
+    if (given.net_shape, given.degree, given.pole) != (asked.net_shape, asked.degree, asked.pole):
+        raise SceneError(
+            f"start: control net {given.net_shape} of degree {given.degree} given, "
+            f"{asked.net_shape} of degree {asked.degree} expected from the discretization"
+        )
     table = start.space.table(2)
     depth = -float(substrate.gap(start.on(table).position).min())
     if depth > 1e-6 * start.size:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,9 @@ import numpy as np
 from ..errors import SceneError
 from ..solids import Plane, Sphere
 from ..splines import Grading
-from ..surface.supports import Sector, Sliding, Support
+from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
-from ..terms import Constraint, Scale, SurfaceTension, Term
+from ..terms import BodyTerm, Centroid, Constraint, Scale, SurfaceTension, Term
 
 
 @dataclass(frozen=True)
@@ -78,8 +78,9 @@ class Scene:
         object.__setattr__(self, "terms", tuple(self.terms))
         object.__setattr__(self, "supports", tuple(self.supports))
         space = self.surface.space
-        if space.continuity < 1 and space.weights is not None:
-            raise SceneError("surface: C1 needed between the elements of a nurbs space")
+        splines = any(basis.knots is not None for basis in space.bases)
+        if space.continuity < 1 and (splines or space.weights is not None):
+            raise SceneError("surface: C1 needed between the elements of a spline space")
         names = [term.name for term in self.terms]
         for name in names:
             if names.count(name) > 1 and name not in ("gravity", "wetting"):
@@ -92,6 +93,50 @@ class Scene:
             tension = next(t.gamma for t in self.terms if isinstance(t, SurfaceTension))
             object.__setattr__(self, "scale", Scale(self.surface.size, tension))
 
+        self._check_mirrors()
+
+    def _check_mirrors(self) -> None:
+        """Refuse a model whose mirror planes the terms do not have."""
+        model, mirrored = self.sector.model, self._mirrored
+        for term in self.terms:
+            if isinstance(term, Centroid) and term.axis in mirrored:
+                raise SceneError(
+                    f'terms: the "{model}" model is symmetric in {term.axis}; a Centroid along '
+                    f"{term.axis} holds nothing there: leave it out or take a larger model"
+                )
+        for axis in mirrored:
+            if axis in self.lateral_load:
+                raise SceneError(
+                    f'discretization.model = "{model}": gravity leans to {axis}, so the scene has '
+                    f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
+                    "model here"
+                )
+
+    @property
+    def _mirrored(self) -> str:
+        return {"full": "", "half": "y"}.get(self.sector.model, "xy")
+
+    @property
+    def lateral_load(self) -> dict[str, float]:
+        """Body force per volume along the axes x and y of the frame, where there is any
+        (dimensionless)."""
+        bodies = [
+            t.density().gradient
+            for t in self.local_terms()
+            if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
+        ]
+        x, y, z = (sum(parts) for parts in zip(*bodies, strict=True)) if bodies else (0, 0, 0)
+        noise = 1e-12 * (abs(x) + abs(y) + abs(z))
+        return {axis: -pull for axis, pull in (("x", x), ("y", y)) if abs(pull) > noise}
+
+    @property
+    def loose_axes(self) -> str:
+        """Axes along which the membrane is free to slide on a plane."""
+        on_plane = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
+        if not on_plane or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports):
+            return ""
+        return "".join(axis for axis in "xy" if axis not in self._mirrored)
+
     @property
     def units(self) -> Scale:
         """The scale, never None."""
@@ -102,11 +147,6 @@ class Scene:
     def sector(self) -> Sector:
         """The part of a closed patch that is computed."""
         return next((s for s in self.supports if isinstance(s, Sector)), Sector())
-
-    @property
-    def constraints(self) -> tuple[Constraint, ...]:
-        """The prescribed integrals."""
-        return tuple(t for t in self.terms if isinstance(t, Constraint))
 
     def local_surface(self) -> Surface:
         """The start in the scene's scale and frame; sliding edges exactly in z = 0.
@@ -141,7 +181,3 @@ class Scene:
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""
         return tuple(term.scaled(self.units) for term in self.terms)
-
-    def starting_from(self, surface: Surface) -> Scene:
-        """The same scene with another start (world coordinates)."""
-        return replace(self, surface=surface)

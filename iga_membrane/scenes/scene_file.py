@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -82,17 +83,20 @@ def load_scene(path: str | Path) -> SceneFile:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise SceneError(f"{path}: larger than {LARGEST_FILE} bytes; no scene file is")
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        size = path.stat().st_size
+        text = path.read_text(encoding="utf-8") if size <= LARGEST_FILE else ""
+    except (OSError, ValueError) as error:
         raise SceneError(f"{path}: cannot be read as text ({error})") from error
+    if size > LARGEST_FILE:
+        raise SceneError(f"{path}: larger than {LARGEST_FILE} bytes; no scene file is")
     try:
         if path.suffix == ".json":
             data = json.loads(text, object_pairs_hook=_no_duplicates)
         else:
             data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, json.JSONDecodeError, RecursionError) as error:
+    except SceneError:
+        raise
+    except (ValueError, RecursionError) as error:
         raise SceneError(f"{path}: not a scene file ({error})") from error
     return read_scene(data)
 
@@ -207,10 +211,11 @@ def _gravity(table: Mapping[str, Any]) -> list[float]:
         raise SceneError("gravity.acceleration: missing, but gravity.direction is given")
     size = number("gravity.acceleration", table.get("acceleration", 0.0), least=0.0)
     direction = np.array(vector("gravity.direction", table.get("direction", [0.0, 0.0, -1.0])))
-    length = float(np.linalg.norm(direction))
-    if not length > 0:
+    largest = float(np.abs(direction).max())
+    if not largest > 0:
         raise SceneError("gravity.direction = [0, 0, 0]: must not be zero")
-    return [float(g) for g in size * direction / length]
+    direction = direction / largest
+    return [float(g) for g in size * direction / np.linalg.norm(direction)]
 
 
 def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
@@ -275,7 +280,8 @@ def _check_numbers(label: str, table: Mapping[str, Any]) -> None:
             if not isinstance(value, bool):
                 raise SceneError(f"{field} = {value!r}: must be true or false")
         elif key in ("degree", "elements"):
-            integer(field, value, least=1 if key == "degree" else 3, most=4096)
+            least, most = (1, 4) if key == "degree" else (3, 4096)
+            integer(field, value, least=least, most=most)
         else:
             _check_nested(field, value, _LIMITS.get(key, Limits()))
     if label == "discretization" and "model" in table:
@@ -291,10 +297,9 @@ def _check_nested(field: str, value: Any, limits: Limits) -> None:
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    keys = [key for key, _ in pairs]
-    for key in keys:
-        if keys.count(key) > 1:
-            raise SceneError(f"{key}: given {keys.count(key)} times in one table; give it once")
+    for key, count in Counter(key for key, _ in pairs).items():
+        if count > 1:
+            raise SceneError(f"{key}: given {count} times in one table; give it once")
     return dict(pairs)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number
+from ..checks import choice, line_angle, number
 from ..errors import SceneError
 from ..solids import Sphere
 from ..surface.ring import axisymmetric, ring_space
@@ -70,8 +70,7 @@ def liquid_sheet(
         raise SceneError(
             f"particle.radius = {r:g}: must be smaller than the rim's radius {0.5 * size:g}"
         )
-    if particle.contact_angle == 180.0:
-        raise SceneError("particle.contact_angle = 180.0: not available yet in this version")
+    line_angle("particle.contact_angle", particle.contact_angle)
     sector = Sector(mesh.model or "eighth")
     terms: list[Term] = [
         SurfaceTension(liquid.surface_tension),

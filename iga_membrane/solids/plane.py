@@ -33,12 +33,12 @@ class Plane:
         )
         object.__setattr__(self, "point", vector("substrate.point", self.point))
         object.__setattr__(self, "normal", vector("substrate.normal", self.normal))
-        if not np.linalg.norm(self.normal) > 0:
+        if not np.abs(self.normal).max() > 0:
             raise SceneError(f"substrate.normal = {self.normal}: must not be zero")
 
     def unit_normal(self) -> Array:
         """(3,) unit normal."""
-        n = np.asarray(self.normal, float)
+        n = np.asarray(self.normal, float) / np.abs(self.normal).max()
         return np.asarray(n / np.linalg.norm(n))
 
     def axes(self) -> Array:

@@ -68,6 +68,10 @@ class System:
         return np.asarray(self.gradient - self.constraint_gradients @ multipliers)
 
 
+TINY = 1e-12
+"""Force over tension below which a residual is nothing: a flat sheet has no forces at all."""
+
+
 class Assembly:
     """The functions of a scene's unknowns, evaluated on one sector in the scene's scale.
 
@@ -186,7 +190,8 @@ class Assembly:
         gradient, columns, scale = self._first_order(points, directions, at, multipliers)
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
-        return System(gradient, columns, constraints, float(np.linalg.norm(scale)), matrix)
+        size = max(float(np.linalg.norm(scale)), TINY * self._tension)
+        return System(gradient, columns, constraints, size, matrix)
 
     def _first_order(
         self, points: Array, directions: Array, at: vary.ElementPoints, multipliers: Array

@@ -16,7 +16,7 @@ from ..solids import Sphere
 from ..surface.motion import Motion
 from ..surface.ring import rational_matrix
 from ..surface.sector import sector_elements
-from ..surface.supports import Sector
+from ..surface.supports import Fixed, Sector, Symmetry
 from ..surface.surface import Surface
 from ..terms import BodyDensity, LineTerm, SurfaceTension, Term, Volume
 from .measures import ContactLine, contact_line, sphere_of, vertical_forces
@@ -102,6 +102,10 @@ def audit(
         return Audit(residual, _missing(terms, inside))
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
     cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
+    free = not any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports)
+    if solid is None and not free:
+        depth = max(0.0, -_lowest(surface, points, sector))
+        return Audit(residual, _missing(terms, inside), angle=cosine, penetration=depth)
     if solid is not None:
         inside += _under_cap(line, solid)
         rounds = float(np.abs(solid.gap(line.position)).max())

@@ -7,7 +7,6 @@ eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -107,21 +106,6 @@ class Matrix:
         return np.asarray(self.sparse() @ vector)
 
 
-@dataclass(frozen=True, eq=False)
-class Step:
-    """Solution of the bordered system.
-
-    Attributes
-    ----------
-    unknowns : (n,) step ``s``; multipliers : (m,) new values ``m``.
-    index : negative eigenvalues of ``K`` (with the shift) on the null space of ``B^T``.
-    """
-
-    unknowns: Array
-    multipliers: Array
-    index: int
-
-
 class Bordered:
     """Factorization of ``[[K + shift, B], [B^T, 0]]``.
 
@@ -186,6 +170,8 @@ class Bordered:
             )
         except RuntimeError as error:
             raise SingularMatrix(str(error)) from error
+        if not np.array_equal(self._lu.perm_r, self._lu.perm_c):
+            raise SingularMatrix("a pivot vanished, so the inertia is not known")
         # Without row exchanges U = D L^T, so the signs of its diagonal are the inertia of K;
         # the Schur complement of the border adds its own (Sylvester, Haynsworth).
         negative = int((self._lu.U.diagonal() < 0).sum())

@@ -75,8 +75,8 @@ def load_stepping(
     Parameters
     ----------
     ramp : its scenes share the assembly's space and supports.
-    smallest : step of the load below which to give up: LIMIT_POINT if the smallest eigenvalue has
-        fallen towards zero on the way, else STALLED.
+    smallest : step of the load below which to give up: LIMIT_POINT if the smallest eigenvalue
+        foretells a fold there, else STALLED.
     report : called with every load reached.
     """
     scene = ramp(0.0)
@@ -85,7 +85,7 @@ def load_stepping(
     path = LoadPath(result, scene, [LoadStep(0.0, len(result.iterations), result.status)])
     if result.status is not None:
         return path
-    stiffness = _stiffness(assembly, path)
+    before = (0.0, _stiffness(assembly, path))
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
     step = 0.25
     while path.last_good < 1.0:
@@ -93,6 +93,9 @@ def load_stepping(
         result = _attempt(assembly, path, ramp(load), attempts)
         path.steps.append(LoadStep(load, len(result.iterations), result.status))
         if result.status is None and result.index <= 0:
+            if path.last_good > before[0]:
+                assembly.load(path.scene)
+                before = (path.last_good, _stiffness(assembly, path))
             path.result, path.scene, path.last_good = result, ramp(load), load
             report(load)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
@@ -102,15 +105,15 @@ def load_stepping(
         else:
             step *= 0.5
             if step < smallest:
-                _give_up(assembly, path, ramp, load, result, stiffness)
+                _give_up(assembly, path, ramp, load, result, before)
                 break
     return path
 
 
 PATIENCE = 20
 """Newton iterations of one attempt: a load that needs more is approached by shorter steps."""
-SOFT = 0.25
-"""Share of its first value below which the smallest eigenvalue tells of a limit point."""
+FOLD = 3.0
+"""Steps of load within which a limit point must be foretold by the smallest eigenvalue."""
 
 
 def _attempt(
@@ -134,19 +137,25 @@ def _give_up(
     ramp: Ramp,
     load: float,
     failed: NewtonResult,
-    stiffness: float,
+    before: tuple[float, float],
 ) -> None:
-    """Name the end of a path: a limit point, or a solver at a loss."""
+    """Name the end of a path: a limit point, or a solver at a loss.
+
+    At a fold the square of the smallest eigenvalue falls linearly to zero. Its extrapolation from
+    the last two good loads must end about where the attempts fail.
+    """
     lo, hi = ramp.value(path.last_good), ramp.value(load)
     assembly.load(path.scene)
     left = _stiffness(assembly, path)
-    if path.last_good > 0 and left < SOFT * stiffness:
+    fall = before[1] ** 2 - left**2
+    walked = path.last_good - before[0]
+    ahead = left**2 * walked / fall if fall > 0 else np.inf
+    if path.last_good > 0 and ahead <= FOLD * (load - path.last_good):
         path.result.status = Status.LIMIT_POINT
-        path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, max(failed.index, 1))
+        path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, failed.index)
         path.result.message = (
             f"no equilibrium beyond {ramp.parameter} = {lo:.6g} (none found at {hi:.6g}; "
-            f"{ramp.end:.6g} was asked for): the smallest eigenvalue falls from {stiffness:.3g} to "
-            f"{left:.2g} on the way"
+            f"{ramp.end:.6g} was asked for): the smallest eigenvalue has fallen to {left:.2g}"
         )
         return
     reason = failed.message or f"{failed.index} negative eigenvalues"

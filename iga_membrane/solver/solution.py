@@ -52,7 +52,7 @@ class Solution:
     lambda_min: float | None
     audit: Audit | None = field(repr=False)
     hold_force: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), repr=False)
-    contact: Mapping[str, float] = field(default_factory=dict, repr=False)
+    contact: Mapping[str, float | None] = field(default_factory=dict, repr=False)
     unknowns: int = 0
     iterations: Sequence[Iteration] = field(default=(), repr=False)
     load_steps: Sequence[LoadStep] = field(default=(), repr=False)

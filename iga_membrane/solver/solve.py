@@ -16,12 +16,12 @@ from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Centroid, LineTerm, PlaneContactLine, SphereContactLine, Volume
+from ..terms import BodyDensity, Centroid, LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit, audit
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, load_stepping
-from .measures import contact_line, measures, vertical_forces
+from .measures import contact_line, measures, vertical_forces, volume
 from .newton import NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
 from .solution import Solution
@@ -43,16 +43,14 @@ class Tolerance:
     line : the same from the spline's own contact angle.
     angle : error of the mean cosine of the contact angle.
     penetration : depth below the substrate over the scene's length.
-    balance : force that nothing balances, over tension times length plus weight.
     """
 
-    residual: float = 2e-3
-    volume: float = 1e-3
+    residual: float = 1e-3
+    volume: float = 1e-4
     force: float = 1e-3
-    line: float = 0.1
-    angle: float = 0.2
+    line: float = 2e-2
+    angle: float = 2e-2
     penetration: float = 1e-6
-    balance: float = 1e-6
 
 
 TOLERANCE = Tolerance()
@@ -172,7 +170,6 @@ def _conclude(
     """Measure, judge and record a state."""
     scene, result = outcome.scene, outcome.result
     surface, multipliers = result.surface, result.multipliers
-    motion = assembly.spines.on(surface)
     verdict, checked = None, None
     status, message, kind = result.status, result.message, None
     if status is None:
@@ -181,13 +178,15 @@ def _conclude(
         except (SingularMatrix, np.linalg.LinAlgError) as error:
             status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
     if status is None and options.audit:
+        motion = assembly.spines.on(surface)
         body = assembly.density(multipliers)
         load = assembly.line_load(multipliers)
         checked = audit(scene, surface, motion, body, load, assembly.points)
     hold = _hold_force(scene, assembly, surface, multipliers)
     if status is None:
         assert verdict is not None
-        status, message = _judge(scene, verdict, checked, hold)
+        inside = volume(assembly, surface)
+        status, message = _judge(scene, verdict, checked, inside)
     scale = scene.units
     total = process_time() - started - assembly.compile_seconds
     return Solution(
@@ -224,24 +223,27 @@ def _hold_force(
 ) -> tuple[float, float, float]:
     """World vector of the force with which the centroid constraints act on the liquid."""
     local = np.zeros(3)
-    volume = next((t.value for t in assembly.constraints if isinstance(t, Volume)), 0.0)
+    inside = volume(assembly, surface)
     for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
         if isinstance(term, Centroid):
-            local["xyz".index(term.axis)] = multiplier * volume
+            local["xyz".index(term.axis)] = multiplier * inside
     x, y, z = (float(f) for f in scene.units.axes @ local * scene.units.force)
     return x, y, z
 
 
+def _unheld(scene: Scene) -> str:
+    """Axes along which nothing but the computation holds the membrane."""
+    return "".join(axis for axis in scene.loose_axes if axis not in scene.hold)
+
+
 def _judge(
-    scene: Scene, verdict: Stability, checked: Audit | None, hold: tuple[float, float, float]
+    scene: Scene, verdict: Stability, checked: Audit | None, inside: float
 ) -> tuple[Status, str]:
     """Status of a converged state."""
-    limit = TOLERANCE
-    free = np.array(hold) @ scene.units.axes / scene.units.force
-    loose = [axis for axis in "xy" if axis not in scene.hold]
-    slipping = float(np.linalg.norm([free["xyz".index(axis)] for axis in loose]))
-    if slipping > limit.balance * (1.0 + float(np.linalg.norm(free))):
-        force = slipping * scene.units.force
+    slipping = {a: f for a, f in scene.lateral_load.items() if a in _unheld(scene)}
+    if slipping:
+        pull = float(np.linalg.norm(list(slipping.values())))
+        force = pull * inside * scene.units.force
         return Status.NO_EQUILIBRIUM, (
             f"nothing balances a tangential force of {force:.6g}: a smooth plane holds no droplet "
             'against it; hold the centroid (droplet.hold = "xy") or level the plane'
@@ -254,6 +256,13 @@ def _judge(
         return Status.CONVERGED_SADDLE, (
             f"equilibrium, but unstable: {verdict.index} motion(s) lower the energy (eigenvalue "
             f"{verdict.smallest:.3g}); disturb the start to leave it"
+        )
+    pinned = {t.axis for t in scene.terms if isinstance(t, Centroid)}
+    neutral = [axis for axis in scene.loose_axes if axis not in pinned]
+    if neutral:
+        return Status.CONVERGED_MARGINAL, (
+            f"equilibrium, but free to slide along {', '.join(neutral)}; add a Centroid there or "
+            "take a symmetric model"
         )
     if verdict.marginal or verdict.index > 0:
         return Status.CONVERGED_MARGINAL, (
@@ -289,12 +298,12 @@ def _defect(checked: Audit, curved: bool) -> tuple[Status, str] | None:
 
 def _contact(
     scene: Scene, surface: Surface, body: BodyDensity, checked: Audit | None
-) -> dict[str, float]:
+) -> dict[str, float | None]:
     """Contact with the substrate, by the names of the result file."""
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if isinstance(line, SphereContactLine):
-        off = checked.penetration if checked else 0.0
-        return {"wet_solids": 1, "max_penetration": off * scene.units.length}
+        off = checked.penetration * scene.units.length if checked else None
+        return {"wet_solids": 1, "max_penetration": off}
     if not isinstance(line, PlaneContactLine):
         return {}
     scale = scene.units
@@ -303,7 +312,7 @@ def _contact(
         "wet_solids": 1,
         "wet_area": forces.wet_area * scale.length**2,
         "wet_fraction": 1.0,
-        "max_penetration": (checked.penetration if checked else 0.0) * scale.length,
+        "max_penetration": checked.penetration * scale.length if checked else None,
         "support_force": (forces.push - forces.line) * scale.force,
     }
 

@@ -22,8 +22,3 @@ class Status(Enum):
     UNDERRESOLVED = "the mesh is too coarse for this scene"
     INTERRUPTED = "stopped from outside"
     UNVERIFIED = "converged, audit switched off"
-
-    @property
-    def converged(self) -> bool:
-        """Whether the iteration ended at an equilibrium."""
-        return self.name.startswith("CONVERGED") or self is Status.UNVERIFIED

@@ -18,7 +18,7 @@ from ..arrays import Array, Index
 from ..errors import GeometryError
 from ..splines import Space, net_of
 from ..splines.space import EDGES
-from .sector import sector_images
+from .sector import check_symmetric, sector_images
 from .supports import Fixed, Joint, Sector, Sliding, Support, Symmetry
 from .surface import Surface
 
@@ -79,6 +79,7 @@ class Spines:
         for support in supports:
             if isinstance(support, Sector) and support.model != "full":
                 owner = sector_images(space, support)[owner]
+                check_symmetric(surface, support)
             elif isinstance(support, Joint):
                 first, second = (space.edge_functions(edge) for edge in support.edges)
                 owner[second] = owner[first]

@@ -8,6 +8,7 @@ from ..arrays import Index
 from ..errors import SceneError
 from ..splines import Space
 from .supports import Sector
+from .surface import Surface
 
 # Mirror planes as fractions of the ring: xi1 -> fold * turn - xi1.
 FOLDS = {"full": (), "half": (0.0,), "quarter": (0.0, 0.5), "eighth": (0.0, 0.5, 0.25)}
@@ -17,6 +18,36 @@ def sector_elements(space: Space, sector: Sector) -> Index:
     """Numbers of the elements in one sector."""
     ring, meridian = space.bases
     return np.arange(ring.elements // sector.copies * meridian.elements)
+
+
+def check_symmetric(surface: Surface, sector: Sector) -> None:
+    """Refuse a start that lacks the mirror planes of its model.
+
+    Raises
+    ------
+    SceneError
+        With the largest distance of a control point from the mirror image it should be.
+    """
+    net = surface.net
+    around = np.arange(len(net))
+    for fold in FOLDS[sector.model]:
+        turn = 2.0 * np.pi * fold
+        mirror = np.array(
+            [[np.cos(turn), np.sin(turn), 0.0], [np.sin(turn), -np.cos(turn), 0.0], [0.0, 0.0, 1.0]]
+        )
+        off = float(np.abs(net[_image(surface.space, fold, around)] - net @ mirror).max())
+        if off > 1e-8 * surface.size:
+            raise SceneError(
+                f'start: not symmetric as the "{sector.model}" model needs (off by {off:g}); '
+                "centre the start or take a larger discretization.model"
+            )
+
+
+def _image(space: Space, fold: float, around: Index) -> Index:
+    """Mirror images of functions of the ring: abscissae add up to the fold."""
+    ring, n1 = space.bases[0], len(around)
+    first = ring.abscissae[0] / (ring.breaks[-1] - ring.breaks[0]) * n1
+    return (round(fold * n1 - 2 * first) - around) % n1
 
 
 def sector_images(space: Space, sector: Sector) -> Index:
@@ -36,10 +67,8 @@ def sector_images(space: Space, sector: Sector) -> Index:
     n1 = ring.count
     around = np.arange(n1)
     owner = around.copy()
-    # The mirror image of function i is function shift - i: abscissae add up to the fold.
-    first = ring.abscissae[0] / (ring.breaks[-1] - ring.breaks[0]) * n1
     for fold in FOLDS[sector.model]:
-        image = (round(fold * n1 - 2 * first) - around) % n1
+        image = _image(space, fold, around)
         for _ in range(sector.copies):
             owner = np.minimum(owner, owner[image])
             owner = owner[owner]

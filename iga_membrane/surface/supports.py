@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from ..checks import choice
 from ..solids.sphere import Sphere
+from ..splines.space import EDGES
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,9 @@ class Fixed:
     """
 
     edge: str
+
+    def __post_init__(self) -> None:
+        choice("edge", self.edge, EDGES)
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,9 @@ class Sliding:
     edge: str = "xi2=0"
     solid: Sphere | None = None
 
+    def __post_init__(self) -> None:
+        choice("edge", self.edge, EDGES)
+
 
 @dataclass(frozen=True)
 class Symmetry:
@@ -45,6 +53,9 @@ class Symmetry:
 
     axis: Literal["x", "y", "z"]
 
+    def __post_init__(self) -> None:
+        choice("axis", self.axis, "xyz")
+
 
 @dataclass(frozen=True)
 class Joint:
@@ -56,6 +67,10 @@ class Joint:
     """
 
     edges: tuple[str, str] = ("xi1=0", "xi1=1")
+
+    def __post_init__(self) -> None:
+        for edge in self.edges:
+            choice("edge", edge, EDGES)
 
 
 @dataclass(frozen=True)
@@ -71,6 +86,9 @@ class Sector:
     """
 
     model: Literal["full", "half", "quarter", "eighth"] = "full"
+
+    def __post_init__(self) -> None:
+        choice("model", self.model, ("full", "half", "quarter", "eighth"))
 
     @property
     def copies(self) -> int:

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..checks import choice, line_angle, number
 from ..solids.sphere import Sphere
 from ..splines import EdgeTable
-from .term import BodyDensity, LineTerm, Scale
+from .term import LINE_EDGES, BodyDensity, LineTerm, Scale
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,11 @@ class SphereContactLine(LineTerm):
     sphere: Sphere
     edge: str = "xi2=0"
     name = "wetting"
+
+    def __post_init__(self) -> None:
+        number("liquid.surface_tension", self.gamma, above=0.0)
+        line_angle("contact_angle", self.sphere.contact_angle)
+        choice("edge", self.edge, LINE_EDGES)
 
     @property
     def strength(self) -> float:

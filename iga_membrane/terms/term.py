@@ -118,6 +118,10 @@ class Constraint(BodyTerm):
         """Value of the integral over the membrane's side of the liquid."""
 
 
+LINE_EDGES = ("xi2=0",)
+"""Edges that can carry a contact line: wetted areas are counted counterclockwise inside them."""
+
+
 class LineTerm(Term):
     """A contact line: ``strength`` times the area wetted inside it, and the part of body integrals
     that the flux through the membrane leaves out because it lies under the wetted area.
