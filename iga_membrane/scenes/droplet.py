@@ -73,7 +73,8 @@ def sessile_droplet(
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
-    bond = liquid.density * (acceleration @ axes) * length**2 / liquid.surface_tension
+    with np.errstate(over="ignore", invalid="ignore"):
+        bond = liquid.density * (acceleration @ axes) * length**2 / liquid.surface_tension
     if not (np.isfinite(bond).all() and 0.0 < length**3 < np.inf):
         raise SceneError(
             f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "

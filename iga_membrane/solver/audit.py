@@ -19,6 +19,7 @@ from ..surface.sector import sector_elements
 from ..surface.supports import Fixed, Sector, Symmetry
 from ..surface.surface import Surface
 from ..terms import BodyDensity, LineTerm, SurfaceTension, Term, Volume
+from .assembly import TINY
 from .measures import ContactLine, contact_line, sphere_of, vertical_forces
 
 
@@ -96,7 +97,8 @@ def audit(
         density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
         pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
         _scatter(total, absolute, motion, edge.functions, pull)
-    residual = float(np.linalg.norm(total[:-1]) / np.linalg.norm(absolute[:-1]))
+    size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
+    residual = float(np.linalg.norm(total[:-1])) / size
     inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
     if not lines:
         return Audit(residual, _missing(terms, inside))

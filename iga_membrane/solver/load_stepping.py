@@ -85,7 +85,6 @@ def load_stepping(
     path = LoadPath(result, scene, [LoadStep(0.0, len(result.iterations), result.status)])
     if result.status is not None:
         return path
-    before = (0.0, _stiffness(assembly, path))
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
     step = 0.25
     while path.last_good < 1.0:
@@ -93,9 +92,6 @@ def load_stepping(
         result = _attempt(assembly, path, ramp(load), attempts)
         path.steps.append(LoadStep(load, len(result.iterations), result.status))
         if result.status is None and result.index <= 0:
-            if path.last_good > before[0]:
-                assembly.load(path.scene)
-                before = (path.last_good, _stiffness(assembly, path))
             path.result, path.scene, path.last_good = result, ramp(load), load
             report(load)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
@@ -105,7 +101,7 @@ def load_stepping(
         else:
             step *= 0.5
             if step < smallest:
-                _give_up(assembly, path, ramp, load, result, before)
+                _give_up(assembly, path, ramp, load, result, attempts)
                 break
     return path
 
@@ -137,20 +133,23 @@ def _give_up(
     ramp: Ramp,
     load: float,
     failed: NewtonResult,
-    before: tuple[float, float],
+    options: NewtonOptions,
 ) -> None:
     """Name the end of a path: a limit point, or a solver at a loss.
 
     At a fold the square of the smallest eigenvalue falls linearly to zero. Its extrapolation from
-    the last two good loads must end about where the attempts fail.
+    a step before the last good load must end about where the attempts fail.
     """
     lo, hi = ramp.value(path.last_good), ramp.value(load)
+    step = load - path.last_good
+    back = max(0.0, path.last_good - step)
+    earlier = _attempt(assembly, path, ramp(back), options)
+    softer = _stiffness(assembly, earlier) if earlier.status is None else 0.0
     assembly.load(path.scene)
-    left = _stiffness(assembly, path)
-    fall = before[1] ** 2 - left**2
-    walked = path.last_good - before[0]
-    ahead = left**2 * walked / fall if fall > 0 else np.inf
-    if path.last_good > 0 and ahead <= FOLD * (load - path.last_good):
+    left = _stiffness(assembly, path.result)
+    fall = softer**2 - left**2
+    ahead = left**2 * (path.last_good - back) / fall if fall > 0 else np.inf
+    if ahead <= FOLD * step:
         path.result.status = Status.LIMIT_POINT
         path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, failed.index)
         path.result.message = (
@@ -166,9 +165,9 @@ def _give_up(
     )
 
 
-def _stiffness(assembly: Assembly, path: LoadPath) -> float:
-    """Smallest eigenvalue of the last good state."""
+def _stiffness(assembly: Assembly, state: NewtonResult) -> float:
+    """Smallest eigenvalue of a state of the load taken last."""
     try:
-        return stability_of(assembly, path.result.surface, path.result.multipliers).smallest
+        return stability_of(assembly, state.surface, state.multipliers).smallest
     except (SingularMatrix, np.linalg.LinAlgError):
         return 0.0

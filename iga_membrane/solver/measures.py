@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -183,7 +184,7 @@ def _droplet(
     scene: Scene, surface: Surface, wet: float, body: BodyDensity, scale: Scale
 ) -> dict[str, float]:
     """Heights, radii and angle of a drop on a plane or on a sphere."""
-    apex = surface.net[0, -1]
+    apex = _apex(surface)
     solid = sphere_of(scene)
     line = contact_line(surface, solid=solid)
     length = float(line.arc.sum())
@@ -193,7 +194,7 @@ def _droplet(
 
     values = {
         "height": float(apex[2]) * scale.length,
-        "equator_radius": _equator(surface) * scale.length,
+        "equator_radius": _equator(surface, line) * scale.length,
         "p_apex": -(body.constant + float(np.dot(body.gradient, apex))) * scale.pressure,
         "contact_angle_measured": float(np.degrees(line.angle @ line.arc / length)),
     }
@@ -290,19 +291,33 @@ def _under_rings(surface: Surface) -> float:
     return total
 
 
-def _equator(surface: Surface) -> float:
-    """Largest distance from the apex's axis, by zooming in on it along the meridians."""
-    apex = surface.net[0, -1]
-    ring = surface.space.bases[0]
-    phi = np.linspace(ring.breaks[0], ring.breaks[-1], 9)[:-1]
-    low, high = 0.0, 1.0
-    best = 0.0
-    for _ in range(6):
-        t = np.linspace(low, high, 41)
-        xi = np.stack(np.meshgrid(phi, t, indexing="ij"), axis=-1)
-        offset = (surface.at(xi, 1).position - apex)[..., :2]
-        radius = np.linalg.norm(offset, axis=-1).max(axis=0)
-        k = int(radius.argmax())
-        best = float(radius[k])
-        low, high = t[max(k - 1, 0)], t[min(k + 1, 40)]
+def _apex(surface: Surface) -> Array:
+    """(3,) highest point; the pole, unless the start stood off it."""
+    return _farthest(surface, lambda x: x[..., 2])
+
+
+def _equator(surface: Surface, line: ContactLine) -> float:
+    """Largest distance from the axis through the middle of the contact line."""
+    middle = line.arc @ line.position[:, :2] / line.arc.sum()
+    point = _farthest(surface, lambda x: np.linalg.norm(x[..., :2] - middle, axis=-1))
+    return float(np.linalg.norm(point[:2] - middle))
+
+
+def _farthest(surface: Surface, measure: Callable[[Array], Array]) -> Array:
+    """Point of the surface with the largest measure, by zooming in on it."""
+    ring, meridian = surface.space.bases
+    low = np.array([ring.breaks[0], meridian.breaks[0]])
+    high = np.array([ring.breaks[-1], meridian.breaks[-1]])
+    ends = low.copy(), high.copy()
+    best = surface.net[0, -1]
+    for steps in ((9, 41), *[(5, 11)] * 8):
+        axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, steps, strict=True)]
+        x = surface.at(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1), 1).position
+        values = measure(x)
+        i, j = np.unravel_index(int(values.argmax()), values.shape)
+        if values[i, j] >= measure(best):
+            best = x[i, j]
+        middle = np.array([axes[0][i], axes[1][j]])
+        reach = 1.01 * np.array([axis[1] - axis[0] for axis in axes])
+        low, high = np.maximum(middle - reach, ends[0]), np.minimum(middle + reach, ends[1])
     return best

@@ -43,18 +43,19 @@ def close_pole(space: Space) -> Space:
     tensor_i, tensor_j = np.divmod(space.functions, n2)
     local = space.functions.shape[1]
     functions = np.where(tensor_j < rings, tensor_i * rings + tensor_j, 0)
-    combine = np.broadcast_to(np.eye(local), (space.elements, local, local)).copy()
-    for e in np.flatnonzero((tensor_j >= rings).any(axis=1)):
+    near = np.flatnonzero((tensor_j >= rings).any(axis=1))
+    combine = np.broadcast_to(np.eye(local), (len(near), local, local)).copy()
+    for place, e in enumerate(near):
         absorbed = np.flatnonzero(tensor_j[e] >= rings)
-        combine[e, absorbed] = 0.0
+        combine[place, absorbed] = 0.0
         rho = (tensor_j[e, absorbed] == n2 - 2).astype(float) if smooth else np.zeros(len(absorbed))
         phi = angles[tensor_i[e, absorbed]]
         for k in range(corners):
             # the first absorbed slots now hold the pole's functions, the rest stay empty
             weight = (1.0 + rho * np.cos(phi - CORNERS[k])) / 3.0 if smooth else 1.0
-            combine[e, absorbed[k], absorbed] = weight
+            combine[place, absorbed[k], absorbed] = weight
             functions[e, absorbed[k]] = n1 * rings + k
-    return replace(space, functions=functions, count=count, combine=combine, pole=smooth)
+    return replace(space, functions=functions, count=count, near=near, combine=combine, pole=smooth)
 
 
 def net_of(space: Space, points: Array) -> Array:

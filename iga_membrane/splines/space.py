@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arrays import Array, Index
 from ..errors import SceneError
@@ -22,9 +22,8 @@ Rows = dict[tuple[int, int], Array]
 class Space:
     """Functions of two parameters ``(xi1, xi2)``.
 
-    The functions of element ``e`` are ``combine[e] @ (tensor products of the two bases)``, where
-    the products are made rational first if there are weights. ``combine`` is None except where a
-    pole joins control points (:mod:`.polar`).
+    The functions of an element are tensor products of the two bases, made rational if there are
+    weights. At a pole (:mod:`.polar`) element ``near[k]`` combines them by ``combine[k]``.
 
     Attributes
     ----------
@@ -32,7 +31,8 @@ class Space:
     functions : (elements, local) global number of each local function.
     count : number of functions, that is of control points.
     weights : (n1, n2) NURBS weights > 0, or None for polynomials.
-    combine : (elements, local, local) or None.
+    near, combine : (k,) elements at a pole and (k, local, local) their functions by tensor
+        products; empty without a pole.
     pole : continuity with which ``xi2 = end`` is closed to a point (0 or 1), or None.
     """
 
@@ -40,7 +40,8 @@ class Space:
     functions: Index = field(repr=False)
     count: int
     weights: Array | None = field(default=None, repr=False)
-    combine: Array | None = field(default=None, repr=False)
+    near: Index = field(default_factory=lambda: np.zeros(0, int), repr=False)
+    combine: Array = field(default_factory=lambda: np.zeros((0, 0, 0)), repr=False)
     pole: int | None = None
 
     @property
@@ -181,18 +182,14 @@ class Space:
         if self.weights is not None:
             tensor = _tensor_functions(self.bases)[elements]
             rows = _rational(rows, self.weights.ravel()[tensor][:, None])
-        if self.combine is not None:
-            near = np.flatnonzero(self._combined[elements])
-            operator = self.combine[elements[near]].transpose(0, 2, 1)
+        if len(self.near):
+            place = np.searchsorted(self.near, elements)
+            place[place == len(self.near)] = 0
+            joined = np.flatnonzero(self.near[place] == elements)
+            operator = self.combine[place[joined]].transpose(0, 2, 1)
             for row in rows.values():
-                row[near] = row[near] @ operator
+                row[joined] = row[joined] @ operator
         return rows
-
-    @cached_property
-    def _combined(self) -> NDArray[np.bool_]:
-        """(elements,) which elements ``combine`` changes."""
-        assert self.combine is not None
-        return (self.combine != np.eye(self.combine.shape[1])).any(axis=(1, 2))
 
 
 EDGES = {"xi2=0": (0, 0), "xi2=1": (0, 1), "xi1=0": (1, 0), "xi1=1": (1, 1)}
