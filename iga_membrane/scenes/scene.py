@@ -55,7 +55,8 @@ class Scene:
     ramp : the way to this scene if a direct solve fails.
     substrate : the solid that a sliding edge touches, for the audit and for pictures.
     hold : axes along which the user asked for the centroid to be held.
-    particle_pull : acceleration along -z that weighs a particle.
+    particle_pull : acceleration along -z that weighs a particle and the liquid on it.
+    liquid_density : of that liquid.
     kind : name of the family, which decides the measures of a solution.
     description : the scene in words of the scene file, for the result.
     warnings : what a user should know about the input.
@@ -70,6 +71,7 @@ class Scene:
     substrate: Plane | Sphere | None = None
     hold: str = ""
     particle_pull: float = 0.0
+    liquid_density: float = 0.0
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     warnings: Sequence[str] = ()

@@ -19,6 +19,7 @@ from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Scene
+from .sheet import liquid_sheet
 
 SCHEMA = 1
 Tables = dict[str, Mapping[str, Any]]
@@ -56,6 +57,7 @@ class Limits(TypedDict, total=False):
 
 
 SCENES = ("sessile_droplet", "liquid_sheet", "asperity_cell", "film_between_rings")
+MOTIONS = ("fixed", "vertical", "normal", "resting")
 SUBSTRATES = ("plane", "sphere", "sphere_lattice", "spheres", "none")
 
 
@@ -196,13 +198,52 @@ def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
     )
 
 
+def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
+    liquid, sheet = tables["liquid"], tables["sheet"]
+    particles = data.get("particle", [])
+    if len(particles) != 1:
+        raise _later(f"a sheet with {len(particles)} [[particle]] tables")
+    if "volume" in liquid:
+        raise SceneError("liquid.volume: a sheet's volume is sheet.volume; move it there")
+    given = particles[0]
+    for field, table in (("sheet.size", sheet), ("particle[0].radius", given),
+                         ("particle[0].center", given),
+                         ("particle[0].contact_angle", given)):  # fmt: skip
+        if field.rpartition(".")[2] not in table:
+            raise SceneError(f"{field}: missing; a sheet on a particle needs it")
+    motion = given.get("motion", "fixed")
+    if choice("particle[0].motion", motion, MOTIONS) != "fixed":
+        raise _later(f'particle[0].motion = "{motion}"')
+    gravity = _gravity(tables["gravity"])
+    if gravity[0] or gravity[1] or gravity[2] > 0:
+        raise _later("a sheet with gravity that does not point along -z")
+    return liquid_sheet(
+        Sphere(
+            given["contact_angle"],
+            given["radius"],
+            given["center"],
+            given.get("density", 0.0),
+        ),
+        size=sheet["size"],
+        boundary=sheet.get("boundary", "square"),
+        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
+        gravity=abs(gravity[2]),
+        pressure=sheet.get("pressure"),
+        volume=sheet.get("volume"),
+        liquid_weight=sheet.get("liquid_weight", False),
+        discretization=Discretization(**tables["discretization"]),
+    )
+
+
 _READERS: dict[str, Callable[[Mapping[str, Any], Tables], Scene]] = {
     "sessile_droplet": _droplet,
     "film_between_rings": _film,
+    "liquid_sheet": _sheet,
 }
 _FOREIGN = {
     "sessile_droplet": ("sheet", "cell", "rings"),
     "film_between_rings": ("gravity", "substrate", "particle", "droplet", "sheet", "cell"),
+    "liquid_sheet": ("substrate", "droplet", "cell", "rings"),
 }
 
 

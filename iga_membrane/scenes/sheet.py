@@ -112,6 +112,7 @@ def liquid_sheet(
         substrate=particle,
         kind="liquid_sheet",
         particle_pull=gravity,
+        liquid_density=liquid.density,
         description=_describe(
             particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
         ),

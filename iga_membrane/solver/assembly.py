@@ -156,6 +156,21 @@ class Assembly:
         _, (flux,) = vary.energies(self.table, vary.element_points(self.table, points), [density])
         return float(flux + sum(t.energy(edge, points, 0.0, density) for t, edge in self.lines))
 
+    def work(self, surface: Surface, multipliers: Array, displacement: Array) -> float:
+        """Derivative of the Lagrangian along any displacement (count, 3) of the control points."""
+        points, body = surface.points, self.density(multipliers)
+        at = vary.element_points(self.table, points)
+        forces = vary.forces(self.table, at, self._tension, body)
+        total = float((forces * displacement[self.table.functions]).sum())
+        for term, edge in self.lines:
+            forces = term.forces(edge, points, term.strength, body)
+            total += float((forces * displacement[edge.functions]).sum())
+        loads = self.line_load(multipliers)
+        for gap, edge in self._gaps:
+            pull = np.einsum("ekai,ek->eai", gap.gradients(edge, points), loads[edge.functions])
+            total -= float((pull * displacement[edge.functions]).sum())
+        return total
+
     def gap_force(self, surface: Surface, multipliers: Array) -> float:
         """Vertical force of the line loads on their solids (one sector)."""
         loads = self.line_load(multipliers)

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..scenes.scene import Scene
 from ..solids import Sphere
+from ..splines import points_of
 from ..splines.quadrature import gauss
 from ..splines.space import EDGES
 from ..surface.surface import Surface
@@ -244,9 +245,10 @@ def _sheet(
 def vertical_pull(assembly: Assembly, surface: Surface, multipliers: Array) -> tuple[float, float]:
     """Upward force on the sphere and the pressure's part of it (dimensionless, full body).
 
-    The force is ``-dE/dz`` of the sphere at fixed control points, the line held by its load: it
-    converges like the energy. With ``e`` the body density, so minus the pressure, the pressure's
-    part is ``int_W e N_z dA = e_0 A_projected + e_z int_W z N_z dA``.
+    The force is ``-dE/dz`` of the sphere, the membrane carried along by a shift that fades linearly
+    towards the other edge: it converges like the energy, which the line integral does not. With
+    ``e`` the body density, so minus the pressure, the pressure's part is
+    ``int_W e N_z dA = e_0 A_projected + e_z int_W z N_z dA``.
     """
     (term, edge), body = assembly.lines[0], assembly.density(multipliers)
     points = surface.points
@@ -255,7 +257,11 @@ def vertical_pull(assembly: Assembly, surface: Surface, multipliers: Array) -> t
     push = body.constant * projected + body.gradient[2] * moment
     lift = float(term.forces(edge, points, term.strength, body)[..., 2].sum())
     held = assembly.gap_force(surface, multipliers)
-    return assembly.copies * (lift + push + held), assembly.copies * push
+    fading = 1.0 - surface.space.abscissae[..., 1]
+    carried = np.zeros((surface.space.count, 3))
+    carried[:, 2] = points_of(surface.space, fading[..., None])[:, 0]
+    work = assembly.work(surface, multipliers, carried)
+    return assembly.copies * (lift + push + held - work), assembly.copies * push
 
 
 def sphere_of(scene: Scene) -> Sphere | None:

@@ -19,6 +19,7 @@ from ..surface.surface import Surface
 from ..terms import BodyDensity, Centroid, LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit, audit
+from .forces import particle_forces
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, load_stepping
 from .measures import contact_line, measures, vertical_forces, volume
@@ -188,13 +189,16 @@ def _conclude(
         inside = volume(assembly, surface)
         status, message = _judge(scene, verdict, checked, inside)
     scale = scene.units
+    found = measures(scene, assembly, surface, multipliers)
+    with_particle = scene.kind == "liquid_sheet"
     total = process_time() - started - assembly.compile_seconds
     return Solution(
         scene=scene,
         status=status,
         message=message,
         surface=surface.moved(scale.to_world(surface.points)),
-        measures=measures(scene, assembly, surface, multipliers),
+        measures=found,
+        forces=particle_forces(scene, found, scene.particle_pull) if with_particle else None,
         multipliers=_named(assembly, multipliers, scale.pressure, scale.length),
         body=assembly.density(multipliers),
         index=verdict.index if verdict else None,

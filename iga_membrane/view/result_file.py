@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import __version__
 from ..scenes.scene_file import SCHEMA
+from ..solver.forces import ParticleForces
 from ..solver.solution import Solution
 
 
@@ -42,7 +43,7 @@ def result(solution: Solution) -> dict[str, Any]:
             "touches_base": False,
             "hold_force": list(solution.hold_force),
         },
-        "forces": [],
+        "forces": [_forces(solution.forces)] if solution.forces else [],
         "audit": vars(verdict) if verdict else None,
         "history": [vars(step) | {"status": step.status and step.status.name}
                     for step in solution.load_steps],
@@ -77,6 +78,25 @@ def write_state(solution: Solution, path: str) -> None:
             points=points,
             multipliers=multipliers,
         )
+
+
+def _forces(found: ParticleForces) -> dict[str, Any]:
+    """Force vectors of a particle with a level contact line."""
+    parts = {
+        "F_G": found.weight,
+        "F_CL": found.line,
+        "F_H": found.hydrostatic,
+        "F_B": found.buoyancy,
+        "F_e": found.effective,
+    }
+    vectors: dict[str, Any] = {name: [0.0, 0.0, value] for name, value in parts.items()}
+    return vectors | {
+        "torque": [0.0, 0.0, 0.0],
+        "normal": found.effective,
+        "tangential": 0.0,
+        "lifts": found.lifts,
+        "paper": dict(found.paper),
+    }
 
 
 def _finite(value: Any) -> Any:

@@ -34,3 +34,9 @@ def test_film_limit():
     assert low <= 0.6627435
     assert high >= 0.6627434
     assert high - low < 1e-3
+
+
+def test_sheet_and_particle():
+    rows = load("sheet_and_particle").main(angles=(150.0, 120.0, 30.0))
+    assert [row["lifts"] for row in rows] == [False, True, True]
+    assert rows[0]["line"] < rows[1]["line"] < rows[2]["line"]

@@ -135,7 +135,8 @@ def test_misspelt_keys_are_refused(path, said):
     [
         ("substrate.kind", "spheres", 'substrate.kind = "spheres": not available yet'),
         ("substrate.kind", "sphere", "substrate.radius: missing"),
-        ("scene", "liquid_sheet", 'scene = "liquid_sheet": not available yet'),
+        ("scene", "asperity_cell", 'scene = "asperity_cell": not available yet'),
+        ("scene", "liquid_sheet", "substrate: does not belong"),
         ("particle", [{"radius": 1.0}], "[[particle]]: not available yet"),
         ("solver.contact", "penalty", "not available yet"),
         ("solver.contact_line", "trimmed", "not available yet"),
