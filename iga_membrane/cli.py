@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from time import process_time
 
@@ -81,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
 @contextmanager
 def _progress() -> Iterator[Callable[[float], None]]:
     """A bar over the load on a terminal; nothing elsewhere."""
-    if not sys.stderr.isatty():
+    if not (sys.stderr.isatty() and find_spec("rich")):
         yield lambda load: None
         return
     from rich.progress import Progress

@@ -6,6 +6,8 @@ from helpers import UNIT_VOLUME, droplet, pinned_cap, solved
 
 import iga_membrane as iga
 from iga_membrane.solver import newton as newton_module
+from iga_membrane.solver.assembly import Assembly
+from iga_membrane.solver.newton import NewtonOptions
 
 TENSION = iga.SurfaceTension(1.0)
 
@@ -141,6 +143,18 @@ def test_full_model_pins_its_neutral_motions_and_says_so():
     assert solution.success
     assert any("pinned" in text for text in solution.warnings)
     assert np.abs(solution.hold_force).max() <= 1e-8
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [pinned_cap(1.0, [TENSION, iga.Volume(0.8)], "eighth", degree=4), droplet(120, 1.0)],
+    ids=["pinned cap", "droplet"],
+)
+def test_newton_converges_quadratically_on_a_fixed_parametrization(scene):
+    options = NewtonOptions(tolerance=1e-11)
+    found = newton_module.newton(Assembly(scene), scene.local_surface(), None, None, options)
+    steps = np.array([i.step for i in found.iterations])[-3:]
+    assert np.log(steps[2] / steps[1]) / np.log(steps[1] / steps[0]) >= 1.8
 
 
 def test_too_few_iterations_are_named_and_carry_the_state():
