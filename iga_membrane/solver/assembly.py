@@ -208,6 +208,12 @@ class Assembly:
         size = max(float(np.linalg.norm(scale)), TINY * self._tension)
         return System(gradient, columns, constraints, size, matrix)
 
+    def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
+        """Gradients of the energy (n,) and of the constraints (n, m), without the Hessian."""
+        points, none = surface.points, np.zeros(self.multipliers)
+        at = vary.element_points(self.table, points)
+        return self._first_order(points, directions, at, none)[:2]
+
     def _first_order(
         self, points: Array, directions: Array, at: vary.ElementPoints, multipliers: Array
     ) -> tuple[Array, Array, Array]:

@@ -185,7 +185,8 @@ def _droplet(
     scene: Scene, surface: Surface, wet: float, body: BodyDensity, scale: Scale
 ) -> dict[str, float]:
     """Heights, radii and angle of a drop on a plane or on a sphere."""
-    apex = _apex(surface)
+    pole = scene.sector.model in ("quarter", "eighth")
+    apex = surface.net[0, -1] if pole else _farthest(surface, lambda x: x[..., 2])
     solid = sphere_of(scene)
     line = contact_line(surface, solid=solid)
     length = float(line.arc.sum())
@@ -295,11 +296,6 @@ def _under_rings(surface: Surface) -> float:
         radius = np.linalg.norm(line.position[:, :2], axis=1)
         total += sign * float(0.5 * (radius * line.position[:, 2]) @ line.arc)
     return total
-
-
-def _apex(surface: Surface) -> Array:
-    """(3,) highest point; the pole, unless the start stood off it."""
-    return _farthest(surface, lambda x: x[..., 2])
 
 
 def _equator(surface: Surface, line: ContactLine) -> float:

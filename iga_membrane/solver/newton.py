@@ -181,9 +181,8 @@ def _iterate(
 
 def _best_balance(assembly: Assembly, surface: Surface) -> Array:
     """Multipliers that leave the least of the forces of a state."""
-    motion = assembly.spines.on(surface)
-    system = assembly.system(surface, motion.directions, np.zeros(assembly.multipliers))
-    return np.asarray(np.linalg.lstsq(system.constraint_gradients, system.gradient)[0], float)
+    gradient, columns = assembly.forces(surface, assembly.spines.on(surface).directions)
+    return np.asarray(np.linalg.lstsq(columns, gradient)[0], float)
 
 
 @dataclass(frozen=True, eq=False)
