@@ -53,7 +53,7 @@ class Scene:
         Sliding edges lie in z = 0 of its frame.
     grading : spread of the control points along the meridians.
     ramp : the way to this scene if a direct solve fails.
-    substrate : the solid that a sliding edge touches, for the audit and for pictures.
+    substrate : the solid that the membrane touches, for its kind, forces and pictures.
     hold : axes along which the user asked for the centroid to be held.
     particle_pull : acceleration along -z that weighs a particle and the liquid on it.
     liquid_density : of that liquid.

@@ -1,7 +1,6 @@
 """A liquid sheet on a spherical particle (paper section 6.2, figures 8-11).
 
-The rim is fixed at z = 0, the liquid lies above the membrane and gas below. Without a particle the
-sheet is a film or cap pinned on its rim.
+The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 """
 
 from __future__ import annotations
@@ -51,8 +50,8 @@ def liquid_sheet(
     Raises
     ------
     SceneError
-        A value out of its range, both pressure and volume, a particle off the axis, larger than
-        the rim or without reach of the sheet.
+        A value out of its range, both pressure and volume, a particle off the axis or not smaller
+        than the rim.
     """
     liquid = liquid or Liquid()
     mesh = discretization or Discretization()

@@ -36,8 +36,8 @@ class Audit:
     line : the same with the line's force from the spline's own tangents: converges slower, so it
         tells how well the line is resolved.
     angle : mean cosine of the measured contact angle minus that of Young's.
-    penetration : depth below the plane over the scene's length, on a sampling four times denser
-        than the quadrature; on a sphere, distance of the line from it.
+    penetration : depth in the solid on a sampling four times denser than the quadrature, over the
+        scene's length (plane) or the sphere's radius; there also the line's distance from it.
     """
 
     residual: float
@@ -105,13 +105,12 @@ def audit(
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
     cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
     free = not any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports)
-    if solid is None and not free:
-        depth = max(0.0, -_lowest(surface, points, sector))
-        return Audit(residual, _missing(terms, inside), angle=cosine, penetration=depth)
+    depth = max(0.0, -_nearest(surface, points, sector, solid))
     if solid is not None:
         inside += _under_cap(line, solid)
-        rounds = float(np.abs(solid.gap(line.position)).max())
-        return Audit(residual, _missing(terms, inside), angle=cosine, penetration=rounds)
+        depth = max(depth, float(np.abs(solid.gap(line.position)).max())) / solid.radius
+    if solid is not None or not free:
+        return Audit(residual, _missing(terms, inside), angle=cosine, penetration=depth)
     angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
     forces = vertical_forces(line, body, tension, float(angle))
     weight = body.gradient[2] * inside
@@ -122,7 +121,7 @@ def audit(
         force=abs(forces.push - forces.line - weight) / scale,
         line=abs(forces.push - forces.measured - weight) / scale,
         angle=cosine,
-        penetration=max(0.0, -_lowest(surface, points, sector)),
+        penetration=depth,
     )
 
 
@@ -133,7 +132,7 @@ def _missing(terms: tuple[Term, ...], inside: float) -> float:
 
 
 def _under_cap(line: ContactLine, solid: Sphere) -> float:
-    """Flux of ``z e_z`` out of the liquid through the wetted cap, from its mean polar angle."""
+    """Flux of ``z e_z`` out of the liquid through the wetted cap, as an integral along its line."""
     away = line.position - np.array(solid.center)
     turn = (away[:, 0] * line.tangent[:, 1] - away[:, 1] * line.tangent[:, 0]) * line.arc
     t = away[:, 2] / np.linalg.norm(away, axis=1)
@@ -153,11 +152,14 @@ def _scatter(total: Array, absolute: Array, motion: Motion, functions: Index, fo
     np.add.at(absolute, where, np.abs(work))
 
 
-def _lowest(surface: Surface, points: tuple[int, int], sector: Sector) -> float:
-    """Smallest z on a sampling four times denser than the quadrature."""
+def _nearest(
+    surface: Surface, points: tuple[int, int], sector: Sector, solid: Sphere | None
+) -> float:
+    """Smallest gap to the solid on a sampling four times denser than the quadrature."""
     one, two = surface.space.bases
     n1 = 4 * points[0] * one.elements // sector.copies
     s = np.linspace(one.breaks[0], one.breaks[-1], n1 * sector.copies + 1)[: n1 + 1]
     t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points[1] * two.elements + 1)
-    heights = one.matrix(s) @ surface.net[..., 2]
-    return float((heights @ rational_matrix(surface.space, t).T).min())
+    lines = np.tensordot(one.matrix(s), surface.net, axes=1)
+    x = rational_matrix(surface.space, t) @ lines
+    return float((x[..., 2] if solid is None else solid.gap(x)).min())

@@ -149,14 +149,11 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
     lines = sum(t.energy(edge, surface.points, t.strength, none) for t, edge in assembly.lines)
     wet = sum(t.energy(edge, surface.points, 1.0, none) for t, edge in assembly.lines)
     e_surf = copies * (tension * area + lines) * scale.energy
-    e_grav = copies * weight * scale.energy + _world_weight(scene, assembly, surface)
-    total = copies * assembly.energies(surface).total * scale.energy + (
-        e_grav - copies * weight * scale.energy
-    )
+    lift = _world_weight(scene, assembly, surface)
     return {
-        "energy": total,
+        "energy": copies * assembly.energies(surface).total * scale.energy + lift,
         "E_surf": e_surf,
-        "E_grav": e_grav,
+        "E_grav": copies * weight * scale.energy + lift,
         "A_LG": copies * area * scale.length**2,
         "A_wet": copies * wet * scale.length**2,
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from time import process_time
 from typing import Literal
@@ -16,13 +16,13 @@ from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Centroid, LineTerm, PlaneContactLine, SphereContactLine
+from ..terms import Centroid, LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit, audit
 from .forces import particle_forces
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, load_stepping
-from .measures import contact_line, measures, vertical_forces, volume
+from .measures import contact_line, measures, vertical_forces, vertical_pull, volume
 from .newton import NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
 from .solution import Solution
@@ -43,7 +43,8 @@ class Tolerance:
     force : vertical balance of the drop.
     line : the same from the spline's own contact angle.
     angle : error of the mean cosine of the contact angle.
-    penetration : depth below the substrate over the scene's length.
+    penetration : depth below a plane over the scene's length.
+    indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
     """
 
     residual: float = 1e-3
@@ -52,6 +53,7 @@ class Tolerance:
     line: float = 2e-2
     angle: float = 2e-2
     penetration: float = 1e-6
+    indentation: float = 1e-2
 
 
 TOLERANCE = Tolerance()
@@ -157,6 +159,8 @@ def _iterate(
         steps = [*steps, LoadStep(1.0, len(nearest.iterations), nearest.status)]
         if nearest.status is None:
             return _Outcome(scene, nearest, steps)
+        if nearest.status is Status.INTERRUPTED:
+            outcome.result.status, outcome.result.message = nearest.status, nearest.message
         outcome = replace(outcome, steps=steps)
     return outcome
 
@@ -172,7 +176,7 @@ def _conclude(
     scene, result = outcome.scene, outcome.result
     surface, multipliers = result.surface, result.multipliers
     verdict, checked = None, None
-    status, message, kind = result.status, result.message, None
+    status, message = result.status, result.message
     if status is None:
         try:
             verdict = stability_of(assembly, surface, multipliers)
@@ -205,7 +209,7 @@ def _conclude(
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
         audit=checked,
         hold_force=hold,
-        contact=_contact(scene, surface, assembly.density(multipliers), checked),
+        contact=_contact(scene, assembly, result, found, checked),
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
         load_steps=tuple(outcome.steps),
@@ -218,7 +222,6 @@ def _conclude(
             "solve": total,
         },
         warnings=_warnings(scene),
-        kind=kind,
     )
 
 
@@ -281,9 +284,10 @@ def _judge(
 def _defect(checked: Audit, curved: bool) -> tuple[Status, str] | None:
     """The audit's objection, or None."""
     limit = TOLERANCE
-    if checked.penetration > (1e-2 if curved else limit.penetration):
+    if not checked.penetration <= (limit.indentation if curved else limit.penetration):
         return Status.PENETRATION, (
-            f"the membrane lies up to {checked.penetration:.1e} lengths below the substrate"
+            f"the membrane lies up to {checked.penetration:.1e} "
+            f"{'radii inside' if curved else 'lengths below'} the substrate"
         )
     for what, value, most in (
         ("residual on doubled quadrature", checked.residual, limit.residual),
@@ -301,23 +305,34 @@ def _defect(checked: Audit, curved: bool) -> tuple[Status, str] | None:
 
 
 def _contact(
-    scene: Scene, surface: Surface, body: BodyDensity, checked: Audit | None
+    scene: Scene,
+    assembly: Assembly,
+    result: NewtonResult,
+    found: Mapping[str, float],
+    checked: Audit | None,
 ) -> dict[str, float | None]:
     """Contact with the substrate, by the names of the result file."""
+    surface, scale = result.surface, scene.units
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
-    if isinstance(line, SphereContactLine):
-        off = checked.penetration * scene.units.length if checked else None
-        return {"wet_solids": 1, "max_penetration": off}
-    if not isinstance(line, PlaneContactLine):
+    if line is None:
         return {}
-    scale = scene.units
-    forces = vertical_forces(contact_line(surface, line.edge), body, line.gamma, line.contact_angle)
+    unit = scale.length
+    if isinstance(line, PlaneContactLine):
+        body = assembly.density(result.multipliers)
+        at = contact_line(surface, line.edge)
+        forces = vertical_forces(at, body, line.gamma, line.contact_angle)
+        support = forces.push - forces.line
+    else:
+        support = -vertical_pull(assembly, surface, result.multipliers)[0]
+    if isinstance(line, SphereContactLine):
+        unit *= line.sphere.radius
+    rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))
     return {
         "wet_solids": 1,
-        "wet_area": forces.wet_area * scale.length**2,
-        "wet_fraction": 1.0,
-        "max_penetration": checked.penetration * scale.length if checked else None,
-        "support_force": (forces.push - forces.line) * scale.force,
+        "wet_area": found["A_wet"],
+        "wet_fraction": found["A_wet"] / (np.pi * rim**2),
+        "max_penetration": checked.penetration * unit if checked else None,
+        "support_force": support * scale.force,
     }
 
 

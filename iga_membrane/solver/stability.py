@@ -27,23 +27,16 @@ class Stability:
     index : number of negative eigenvalues.
     smallest : eigenvalue of smallest magnitude, negative if the index is not 0.
     error : how far ``smallest`` still moved in the last iteration.
-    mode : (n,) its eigenvector in the unknowns.
     """
 
     index: int
     smallest: float
     error: float
-    mode: Array
 
     @property
     def marginal(self) -> bool:
         """Whether the sign of the smallest eigenvalue is undecided."""
         return abs(self.smallest) <= self.error
-
-    @property
-    def stable(self) -> bool:
-        """Whether every admissible normal motion raises the energy."""
-        return self.index == 0 and self.smallest > self.error
 
 
 def stability_of(assembly: Assembly, surface: Surface, multipliers: Array) -> Stability:
@@ -89,7 +82,7 @@ def stability(
         error, smallest = abs(float(values[critical]) - smallest), float(values[critical])
         if error <= 1e-6 * abs(smallest):
             break
-    return Stability(factor.index, smallest, error, vectors[:, critical])
+    return Stability(factor.index, smallest, error)
 
 
 def _inverse(factor: Bordered, columns: Array, m: int) -> Array:

@@ -61,6 +61,13 @@ def test_energy_and_pressure_superconverge(degree):
         assert abs(found[-1]) < {2: 1e-5, 3: 1e-7, 4: 1e-9}[degree]
 
 
+@pytest.mark.parametrize("radius", [0.5, 1.0, 5.0])
+def test_the_sphere_carries_the_weight(radius):
+    solution = iga.solve(on_sphere(120, radius, 0.5))
+    assert solution.contact["support_force"] == pytest.approx(0.5 * UNIT_VOLUME, rel=1e-6)
+    assert solution.contact["wet_area"] == pytest.approx(solution.measures["A_wet"])
+
+
 def test_full_drop_slides_off():
     solution = iga.solve(on_sphere(120, 1.0, 0.5, model="full", elements=8), on_fail="return")
     assert solution.status is iga.Status.CONVERGED_SADDLE
