@@ -36,6 +36,9 @@ _HOME = {
     "solver.status": ("Status",),
     "solver.solution": ("Solution",),
     "solver.solve": ("solve",),
+    "solver.trace": ("Path", "trace"),
+    "solver.contact_line": ("contact_line",),
+    "analysis.critical": ("Crossing", "critical_value"),
     "view.picture": ("plot",),
     "view.export": ("save",),
 }  # fmt: skip

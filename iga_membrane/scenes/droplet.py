@@ -27,7 +27,7 @@ from ..terms import (
     Term,
     Volume,
 )
-from .liquid import MODELS, Discretization, Liquid, Model
+from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import Ramp, Scene
 from .start import Pancake, drop_on_sphere, least_energy_pancake
 
@@ -64,7 +64,7 @@ def sessile_droplet(
         gravity does not have; a start below the substrate.
     """
     liquid = liquid or Liquid()
-    mesh = discretization or Discretization()
+    mesh = (discretization or Discretization()).mesh()
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     acceleration = _acceleration(gravity)
@@ -112,7 +112,7 @@ def sessile_droplet(
         (foot.support, sector),
         scale=scale,
         grading=grading,
-        ramp=Ramp("gravity.acceleration", 0.0, pull, at) if bond.any() else None,
+        ramp=Ramp("gravity.acceleration", (0.0, pull), at) if bond.any() else None,
         substrate=substrate,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
@@ -127,7 +127,7 @@ def _acceleration(gravity: Any) -> Array:
     return np.array(vector("gravity", gravity))
 
 
-def _sector(mesh: Discretization, bond: Array) -> Sector:
+def _sector(mesh: Mesh, bond: Array) -> Sector:
     """The model asked for, or the smallest that gravity's direction allows."""
     tiny = 1e-14 * float(np.abs(bond).max())
     along_x, along_y = (abs(float(b)) > tiny for b in bond[:2])
@@ -189,7 +189,7 @@ def _grading(contact_angle: float, bond: float, length: float) -> Grading:
     return Grading(float(first))
 
 
-def _start(foot: _Foot, mesh: Discretization, grading: Grading, scale: Scale) -> Surface:
+def _start(foot: _Foot, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
     pancake = foot.pancake
 
     def profile(t: Array) -> tuple[Array, Array, Array]:
@@ -201,7 +201,7 @@ def _start(foot: _Foot, mesh: Discretization, grading: Grading, scale: Scale) ->
     return local.moved(scale.to_world(local.points + [0.0, 0.0, foot.lift]))
 
 
-def _check_start(start: Surface, mesh: Discretization, substrate: Plane | Sphere) -> None:
+def _check_start(start: Surface, mesh: Mesh, substrate: Plane | Sphere) -> None:
     asked = drop_space(mesh.space, mesh.degree, mesh.elements)
     given = start.space
     if (given.net_shape, given.degree, given.pole) != (asked.net_shape, asked.degree, asked.pole):
@@ -240,7 +240,7 @@ def _describe(
     volume: float,
     liquid: Liquid,
     acceleration: Array,
-    mesh: Discretization,
+    mesh: Mesh,
     sector: Sector,
     hold: str,
 ) -> dict[str, Any]:
@@ -257,12 +257,7 @@ def _describe(
         "gravity": {"acceleration": size, "direction": [float(d) for d in direction]},
         "substrate": _describe_substrate(substrate),
         "droplet": {"hold": hold},
-        "discretization": {
-            "space": mesh.space,
-            "degree": mesh.degree,
-            "elements": mesh.elements,
-            "model": sector.model,
-        },
+        "discretization": mesh.described(sector.model),
     }
 
 

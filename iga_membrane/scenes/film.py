@@ -13,7 +13,7 @@ from ..errors import SceneError
 from ..surface.ring import axisymmetric, ring_space
 from ..surface.supports import Fixed, Sector
 from ..terms import Pressure, Scale, SurfaceTension, Term, Volume
-from .liquid import Discretization, Liquid
+from .liquid import Discretization, Liquid, Mesh
 from .scene import Ramp, Scene
 
 SLENDER = 0.4
@@ -44,7 +44,7 @@ def film_between_rings(
         A value out of its range, or both volume and pressure.
     """
     liquid = liquid or Liquid()
-    mesh = discretization or Discretization()
+    mesh = (discretization or Discretization()).mesh()
     radius = number("rings.radius", radius, above=0.0)
     half_height = number("rings.half_height", half_height, above=0.0)
     if volume is not None and pressure is not None:
@@ -82,7 +82,7 @@ def film_between_rings(
         terms,
         (Fixed("xi2=0"), Fixed("xi2=1"), Sector(model)),
         scale=Scale(radius, liquid.surface_tension),
-        ramp=Ramp("rings.half_height", start, half_height, at) if start < half_height else None,
+        ramp=Ramp("rings.half_height", (start, half_height), at) if start < half_height else None,
         kind="film_between_rings",
         description=_describe(radius, half_height, liquid, volume, pressure, mesh, model),
     )
@@ -101,7 +101,7 @@ def _describe(
     liquid: Liquid,
     volume: float | None,
     pressure: float | None,
-    mesh: Discretization,
+    mesh: Mesh,
     model: str,
 ) -> Mapping[str, Any]:
     rings = {"radius": radius, "half_height": half_height, "volume": volume, "pressure": pressure}
@@ -109,10 +109,5 @@ def _describe(
         "scene": "film_between_rings",
         "liquid": {"surface_tension": liquid.surface_tension, "density": liquid.density},
         "rings": {key: value for key, value in rings.items() if value is not None},
-        "discretization": {
-            "space": mesh.space,
-            "degree": mesh.degree,
-            "elements": mesh.elements,
-            "model": model,
-        },
+        "discretization": mesh.described(model),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from ..checks import choice, integer, number
 from ..errors import SceneError
@@ -33,7 +33,7 @@ class Liquid:
 
 @dataclass(frozen=True)
 class Discretization:
-    """Space and mesh of one patch.
+    """Space and mesh of one patch; what is None is chosen by the scene.
 
     Attributes
     ----------
@@ -44,8 +44,8 @@ class Discretization:
     """
 
     space: str = "bspline"
-    degree: int = 4
-    elements: int = 20
+    degree: int | None = None
+    elements: int | None = None
     model: Model | None = None
 
     def __post_init__(self) -> None:
@@ -55,7 +55,32 @@ class Discretization:
                 f"discretization.degree = {self.degree}: degree {self.degree} is not C1, C1 needed "
                 f'for curvature and contact lines: degree >= 2 in space "{self.space}"'
             )
-        integer("discretization.degree", self.degree, least=1, most=4)
-        integer("discretization.elements", self.elements, least=3, most=4096)
+        if self.degree is not None:
+            integer("discretization.degree", self.degree, least=1, most=4)
+        if self.elements is not None:
+            integer("discretization.elements", self.elements, least=3, most=4096)
         if self.model is not None:
             choice("discretization.model", self.model, MODELS)
+
+    def mesh(self, *, degree: int = 4, elements: int = 20) -> Mesh:
+        """The choices, with a scene's own where there are none."""
+        return Mesh(self.space, self.degree or degree, self.elements or elements, self.model)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A :class:`Discretization` with every choice made, except perhaps the model."""
+
+    space: str
+    degree: int
+    elements: int
+    model: Model | None
+
+    def described(self, model: str) -> dict[str, Any]:
+        """By the names of the scene file."""
+        return {
+            "space": self.space,
+            "degree": self.degree,
+            "elements": self.elements,
+            "model": model,
+        }

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Sphere
 from ..splines import Grading
@@ -18,23 +19,29 @@ from ..terms import BodyTerm, Centroid, Constraint, Scale, SurfaceTension, Term
 
 @dataclass(frozen=True)
 class Ramp:
-    """The way round a direct solve: scenes of one space along a parameter.
+    """A way to a scene: scenes of one space along a parameter.
 
     Attributes
     ----------
     parameter : its path in the scene file, "gravity.acceleration".
-    start, end : its values at load 0 and 1.
+    values : what it is at equal parts of the load, from 0 to 1.
     scene_at : value of the parameter to the scene.
+    asked : whether the user wants the way itself, not only its end: no direct solve is tried.
     """
 
     parameter: str
-    start: float
-    end: float
+    values: tuple[float, ...]
     scene_at: Callable[[float], Scene] = field(repr=False)
+    asked: bool = False
+
+    @property
+    def stops(self) -> Array:
+        """Loads of the values; load steps end there."""
+        return np.linspace(0.0, 1.0, len(self.values))
 
     def value(self, load: float) -> float:
         """The parameter at a load in [0, 1]."""
-        return self.start + load * (self.end - self.start)
+        return float(np.interp(load, self.stops, self.values))
 
     def __call__(self, load: float) -> Scene:
         return self.scene_at(self.value(load))
@@ -99,7 +106,7 @@ class Scene:
 
     def _check_mirrors(self) -> None:
         """Refuse a model whose mirror planes the terms do not have."""
-        model, mirrored = self.sector.model, self._mirrored
+        model, mirrored = self.sector.model, self.sector.mirrored
         for term in self.terms:
             if isinstance(term, Centroid) and term.axis in mirrored:
                 raise SceneError(
@@ -113,10 +120,6 @@ class Scene:
                     f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
                     "model here"
                 )
-
-    @property
-    def _mirrored(self) -> str:
-        return {"full": "", "half": "y"}.get(self.sector.model, "xy")
 
     @property
     def lateral_load(self) -> dict[str, float]:
@@ -137,13 +140,18 @@ class Scene:
         on_plane = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
         if not on_plane or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports):
             return ""
-        return "".join(axis for axis in "xy" if axis not in self._mirrored)
+        return "".join(axis for axis in "xy" if axis not in self.sector.mirrored)
 
     @property
     def units(self) -> Scale:
         """The scale, never None."""
         assert self.scale is not None
         return self.scale
+
+    @property
+    def meridian_grading(self) -> Grading | None:
+        """The grading of a ring patch; other patches keep their parametrization."""
+        return self.grading if self.surface.space.bases[0].periodic else None
 
     @property
     def sector(self) -> Sector:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypedDict
 
@@ -18,7 +20,7 @@ from ..solids import Plane, Sphere
 from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
 from .liquid import MODELS, Discretization, Liquid
-from .scene import Scene
+from .scene import Ramp, Scene
 from .sheet import liquid_sheet
 
 SCHEMA = 1
@@ -141,9 +143,60 @@ def read_scene(data: Any) -> SceneFile:
     for name in _FOREIGN[kind]:
         if data.get(name):
             raise SceneError(f'{name}: does not belong to scene = "{kind}"; remove it')
+    limits = _solver(tables["solver"])
     if data.get("path"):
-        raise _later("[[path]]")
-    return SceneFile(_READERS[kind](data, tables), _solver(tables["solver"]))
+        return SceneFile(_along_path(data), limits)
+    return SceneFile(_READERS[kind](data, tables), limits)
+
+
+def _along_path(data: Mapping[str, Any]) -> Scene:
+    """The scene at the end of its path, with the path as the ramp to walk."""
+    if len(data["path"]) > 1:
+        raise _later(f"{len(data['path'])} [[path]] tables")
+    path = data["path"][0]
+    for key in ("parameter", "values"):
+        if key not in path:
+            raise SceneError(f"path[0].{key}: missing; a path needs it")
+    parameter, values = path["parameter"], path["values"]
+    if not isinstance(values, list) or len(values) < 2:
+        raise SceneError(f"path[0].values = {values!r}: a list of two or more numbers is needed")
+    values = tuple(number(f"path[0].values[{i}]", v) for i, v in enumerate(values))
+    fixed = {key: value for key, value in data.items() if key != "path"}
+
+    def at(value: float) -> Scene:
+        return read_scene(_set(fixed, parameter, value)).scene
+
+    # one model for the whole path: the largest that any of its scenes needs
+    models = [at(value).sector.model for value in values]
+    mesh = dict(fixed.get("discretization", {}))
+    fixed["discretization"] = {"model": min(models, key=MODELS.index)} | mesh
+    end = at(values[-1])
+    description = dict(end.description) | {"path": [{"parameter": parameter, "values": values}]}
+    return replace(end, ramp=Ramp(parameter, values, at, asked=True), description=description)
+
+
+def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any]:
+    """A copy of a scene file's tables with one number changed."""
+    steps = re.findall(r"[a-z_]+|\[\d+\]", parameter)
+    well_formed = re.fullmatch(r"[a-z_]+(\[\d+\])?\.[a-z_]+(\[\d+\])?", parameter)
+    keys = [step for step in steps if not step.startswith("[")]
+    if not well_formed or keys[1] not in KEYS.get(keys[0], ()):
+        raise SceneError(
+            f"path[0].parameter = {parameter!r}: must be the path of a number in the scene file, "
+            'like "substrate.contact_angle" or "particle[0].center[2]"'
+        )
+    changed = copy.deepcopy(dict(data))
+    place: Any = changed
+    indices = [int(step[1:-1]) if step.startswith("[") else step for step in steps]
+    try:
+        for step in indices[:-1]:
+            place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
+        place[indices[-1]] = value
+    except (IndexError, KeyError, TypeError) as error:
+        raise SceneError(
+            f"path[0].parameter = {parameter!r}: there is no such place in the scene file"
+        ) from error
+    return changed
 
 
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
@@ -201,29 +254,17 @@ def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
 def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, sheet = tables["liquid"], tables["sheet"]
     particles = data.get("particle", [])
-    if len(particles) != 1:
+    if len(particles) > 1:
         raise _later(f"a sheet with {len(particles)} [[particle]] tables")
     if "volume" in liquid:
         raise SceneError("liquid.volume: a sheet's volume is sheet.volume; move it there")
-    given = particles[0]
-    for field, table in (("sheet.size", sheet), ("particle[0].radius", given),
-                         ("particle[0].center", given),
-                         ("particle[0].contact_angle", given)):  # fmt: skip
-        if field.rpartition(".")[2] not in table:
-            raise SceneError(f"{field}: missing; a sheet on a particle needs it")
-    motion = given.get("motion", "fixed")
-    if choice("particle[0].motion", motion, MOTIONS) != "fixed":
-        raise _later(f'particle[0].motion = "{motion}"')
+    if "size" not in sheet:
+        raise SceneError("sheet.size: missing; a liquid sheet needs it")
     gravity = _gravity(tables["gravity"])
     if gravity[0] or gravity[1] or gravity[2] > 0:
         raise _later("a sheet with gravity that does not point along -z")
     return liquid_sheet(
-        Sphere(
-            given["contact_angle"],
-            given["radius"],
-            given["center"],
-            given.get("density", 0.0),
-        ),
+        _particle(particles[0]) if particles else None,
         size=sheet["size"],
         boundary=sheet.get("boundary", "square"),
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
@@ -232,6 +273,18 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
         volume=sheet.get("volume"),
         liquid_weight=sheet.get("liquid_weight", False),
         discretization=Discretization(**tables["discretization"]),
+    )
+
+
+def _particle(given: Mapping[str, Any]) -> Sphere:
+    for key in ("radius", "center", "contact_angle"):
+        if key not in given:
+            raise SceneError(f"particle[0].{key}: missing; a particle needs it")
+    motion = given.get("motion", "fixed")
+    if choice("particle[0].motion", motion, MOTIONS) != "fixed":
+        raise _later(f'particle[0].motion = "{motion}"')
+    return Sphere(
+        given["contact_angle"], given["radius"], given["center"], given.get("density", 0.0)
     )
 
 

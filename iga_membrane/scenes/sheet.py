@@ -1,4 +1,4 @@
-"""A liquid sheet on a spherical particle (paper section 6.2, figures 8-11).
+"""A liquid sheet, alone or on a spherical particle (paper section 6.2, figures 8-11).
 
 The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 """
@@ -13,68 +13,75 @@ from ..arrays import Array
 from ..checks import choice, line_angle, number
 from ..errors import SceneError
 from ..solids import Sphere
-from ..surface.ring import axisymmetric, ring_space
-from ..surface.supports import Fixed, Sector, Sliding
+from ..splines import Grading, Space, points_of
+from ..surface.ring import (
+    axisymmetric,
+    circle,
+    drop_space,
+    meridian_interpolation,
+    ring_space,
+    square,
+)
+from ..surface.shapes import sheet as flat_square
+from ..surface.supports import Fixed, Sector, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension, Term, Volume
-from .liquid import Discretization, Liquid
+from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import Ramp, Scene
 
 BOUNDARIES = ("square", "circle")
 
 
 def liquid_sheet(
-    particle: Sphere,
+    particle: Sphere | None = None,
     *,
     size: float,
-    boundary: str = "circle",
+    boundary: str = "square",
     liquid: Liquid | None = None,
     gravity: float = 0.0,
     pressure: float | None = None,
     volume: float | None = None,
     liquid_weight: bool = False,
     discretization: Discretization | None = None,
+    start: Surface | None = None,
 ) -> Scene:
-    """Sheet pinned on a rim in z = 0, touching a sphere from above.
+    """Sheet pinned on a rim in z = 0; without a particle a film or a cap.
 
     Parameters
     ----------
-    particle : fixed sphere on the z axis, with contact angle and density.
-    size : diameter of the circular rim.
-    boundary : "circle"; "square" is not available yet.
+    particle : fixed sphere that the sheet touches from above, with contact angle and density.
+    size : edge length of the square rim, or diameter of the circular one.
+    boundary : "square" or "circle".
     gravity : acceleration along -z; it weighs the particle, and the sheet if ``liquid_weight``.
     pressure : liquid minus gas at z = 0, 0 if neither it nor a volume is given.
     volume : signed liquid volume below z = 0 less the wetted cap.
     liquid_weight : whether the pressure along the sheet is ``p0 - rho g z``.
+    start : a surface of the same space to start from; it also chooses among several equilibria.
 
     Raises
     ------
     SceneError
-        A value out of its range, both pressure and volume, a particle off the axis or not smaller
-        than the rim.
+        A value out of its range, both pressure and volume, a particle whose middle is not inside
+        the rim, a model with a mirror plane that the particle's place does not have.
     """
     liquid = liquid or Liquid()
-    mesh = discretization or Discretization()
-    if choice("sheet.boundary", boundary, BOUNDARIES) == "square":
-        raise SceneError('sheet.boundary = "square": not available yet in this version')
+    choice("sheet.boundary", boundary, BOUNDARIES)
+    mesh = (discretization or Discretization()).mesh(elements=8 if boundary == "square" else 20)
     size = number("sheet.size", size, above=0.0)
     gravity = number("gravity.acceleration", gravity, least=0.0)
     if pressure is not None and volume is not None:
         raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
-    rim, r = 0.5 * size / particle.radius, particle.radius
-    x, y, z = particle.center
-    if x or y:
-        raise SceneError(f"particle.center = {[x, y, z]}: must lie on the z axis (x = y = 0)")
-    if rim <= 1.0:
-        raise SceneError(
-            f"particle.radius = {r:g}: must be smaller than the rim's radius {0.5 * size:g}"
-        )
-    line_angle("particle.contact_angle", particle.contact_angle)
-    sector = Sector(mesh.model or "eighth")
-    terms: list[Term] = [
-        SurfaceTension(liquid.surface_tension),
-        SphereContactLine(liquid.surface_tension, particle),
-    ]
+    sector = _sector(mesh, particle)
+    gamma = liquid.surface_tension
+    terms: list[Term] = [SurfaceTension(gamma)]
+    supports: list[Support] = [sector]
+    if particle is None:
+        supports += [Fixed(edge) for edge in _rim_edges(boundary)]
+    else:
+        line_angle("particle.contact_angle", particle.contact_angle)
+        _check_place(particle, size, boundary)
+        terms.append(SphereContactLine(gamma, particle))
+        supports += [Sliding("xi2=0", particle), Fixed("xi2=1")]
     if volume is not None:
         # a sheet's volume is signed, so the constraint's positive scale is the rim's own
         whole = np.pi * (0.5 * size) ** 3
@@ -86,28 +93,47 @@ def liquid_sheet(
     if liquid_weight and gravity * liquid.density:
         terms.append(Gravity(liquid.density, (0.0, 0.0, -gravity)))
 
-    def at(angle: float) -> Scene:
-        return liquid_sheet(
-            Sphere(angle, r, particle.center, particle.density),
-            size=size,
-            boundary=boundary,
-            liquid=liquid,
-            gravity=gravity,
-            pressure=pressure,
-            volume=volume,
-            liquid_weight=liquid_weight,
-            discretization=Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
-        )
+    def again(**changed: Any) -> Scene:
+        given: dict[str, Any] = {
+            "particle": particle,
+            "size": size,
+            "boundary": boundary,
+            "liquid": liquid,
+            "gravity": gravity,
+            "pressure": pressure,
+            "volume": volume,
+            "liquid_weight": liquid_weight,
+            "discretization": Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
+        }
+        return liquid_sheet(**given | changed)
 
-    easy = 90.0
+    ramp = None
+    if start is None:
+        surface = _start(particle, size, boundary, mesh, (pressure or 0.0) / gamma, volume)
+        if particle is not None:
+            own = particle
+
+            def at_angle(angle: float) -> Scene:
+                return again(particle=Sphere(angle, own.radius, own.center, own.density))
+
+            if particle.contact_angle != EASY:
+                values = (EASY, particle.contact_angle)
+                ramp = Ramp("particle[0].contact_angle", values, at_angle)
+        elif pressure:
+            ramp = Ramp("sheet.pressure", (0.0, pressure), lambda p: again(pressure=p))
+        elif volume:
+            ramp = Ramp("sheet.volume", (0.0, volume), lambda v: again(volume=v))
+    else:
+        surface = start
+        _check_start(start, _space(particle, boundary, mesh))
+    length = 0.5 * size if particle is None else particle.radius
     return Scene(
-        _start(particle, rim, mesh),
+        surface,
         terms,
-        (Sliding("xi2=0", particle), Fixed("xi2=1"), sector),
-        scale=Scale(r, liquid.surface_tension),
-        ramp=Ramp("particle[0].contact_angle", easy, particle.contact_angle, at)
-        if particle.contact_angle != easy
-        else None,
+        supports,
+        scale=Scale(length, gamma),
+        grading=Grading() if particle is None else _grading(surface, size),
+        ramp=ramp,
         substrate=particle,
         kind="liquid_sheet",
         particle_pull=gravity,
@@ -118,29 +144,135 @@ def liquid_sheet(
     )
 
 
-def _start(particle: Sphere, rim: float, mesh: Discretization) -> Surface:
-    """Cone from the contact line that meets the sphere at Young's angle to the rim."""
-    top = particle.center[2] / particle.radius + 1.0
-    theta = np.radians(particle.contact_angle)
+EASY = 90.0
+"""Contact angle at which every sheet on a particle starts its ramp."""
+
+
+def _rim_edges(boundary: str) -> tuple[str, ...]:
+    return ("xi2=0",) if boundary == "circle" else ("xi1=0", "xi1=1", "xi2=0", "xi2=1")
+
+
+def _sector(mesh: Mesh, particle: Sphere | None) -> Sector:
+    x, y, _ = (0.0, 0.0, 0.0) if particle is None else particle.center
+    smallest: Model = "full" if y else "half" if x else "eighth"
+    model = mesh.model or smallest
+    if MODELS.index(model) > MODELS.index(smallest):
+        raise SceneError(
+            f'discretization.model = "{model}": the particle stands at x, y = {x:g}, {y:g}, so the '
+            f'sheet has no such mirror planes; "{smallest}" is the smallest model here'
+        )
+    return Sector(model)
+
+
+def _check_place(particle: Sphere, size: float, boundary: str) -> None:
+    x, y, _ = particle.center
+    reach = max(abs(x), abs(y)) if boundary == "square" else float(np.hypot(x, y))
+    if reach >= 0.5 * size:
+        raise SceneError(
+            f"particle.center = {list(particle.center)}: must lie inside the rim, less than "
+            f"{0.5 * size:g} from its middle"
+        )
+
+
+def _space(particle: Sphere | None, boundary: str, mesh: Mesh) -> Space:
+    if particle is not None:
+        corners = boundary == "square"
+        return ring_space(mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=corners)
+    if boundary == "circle":
+        return drop_space(mesh.space, mesh.degree, mesh.elements)
+    kind = "lagrange" if mesh.space == "lagrange" else "bspline"
+    return flat_square(1.0, elements=mesh.elements, degree=mesh.degree, space=kind).space
+
+
+def _start(
+    particle: Sphere | None,
+    size: float,
+    boundary: str,
+    mesh: Mesh,
+    curvature: float,
+    volume: float | None,
+) -> Surface:
+    """A cone on the particle, a spherical cap in the circle, a bulge in the square."""
+    space, half = _space(particle, boundary, mesh), 0.5 * size
+    if particle is not None:
+        return _cone(space, particle, half, boundary)
+    if boundary == "circle":
+        depth = _cap_depth(curvature * half, None if volume is None else volume / half**3)
+        return _cap(space, half, half * depth)
+    y, x = np.moveaxis(2.0 * space.abscissae - 1.0, -1, 0)
+    # a uniform load bends the unit square by 0.0737 of it in the middle; the bulge holds 4/9
+    depth = 0.0737 * curvature * size**2 if volume is None else 9.0 / 4.0 * volume / size**2
+    z = -np.clip(depth, -half, half) * (1.0 - x**2) * (1.0 - y**2)
+    net = np.stack([half * x, half * y, z], axis=-1)
+    return Surface(space, net.reshape(-1, 3))
+
+
+def _cone(space: Space, particle: Sphere, half: float, boundary: str) -> Surface:
+    """Straight lines from the circle where they meet the sphere at Young's angle to the rim."""
+    r, (x, y, z) = particle.radius, particle.center
+    rim = (half - max(abs(x), abs(y))) / r
     polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
-    depth = top - 1.0 + np.cos(polar)
+    polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
+    depth = z / r + np.cos(polar)
     slope = np.arctan2(-depth, rim - np.sin(polar))
-    excess = np.pi - theta - polar - slope
+    excess = np.pi - np.radians(particle.contact_angle) - polar - slope
     falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
     # the last crossing is the stable one; without any, the nearest to one
-    k = int(falls[-1]) if len(falls) else int(excess.argmax())
-    a, z = np.sin(polar[k]), depth[k]
+    k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
+    a, ring = np.sin(polar[k]), circle(space.bases[0])
+    outer = half * ring if boundary == "circle" else half * square(space.bases[0])
+    inner = np.array([x, y, r * depth[k]]) + r * a * ring
+    points, matrix = meridian_interpolation(space)
+    first, second = np.linalg.solve(matrix, np.stack([1.0 - points, points], axis=1)).T[:, :, None]
+    return Surface(space, points_of(space, inner[:, None] * first + outer[:, None] * second))
+
+
+def _grading(surface: Surface, size: float) -> Grading:
+    """Shorter steps near the particle, where the sheet falls like a logarithm; 0.8 balances the
+    errors of round and square rims (docs/results/sheet_and_particle.md)."""
+    inner = surface.net[:, 0, :2]
+    radius = np.linalg.norm(inner - inner.mean(axis=0), axis=1).mean()
+    rate = 0.8 * np.log(0.5 * size / radius)
+    return Grading(float(rate / np.expm1(rate))) if rate > 0 else Grading()
+
+
+def _cap_depth(curvature: float, volume: float | None) -> float:
+    """Depth over rim radius of the spherical cap of a pressure over tension, or of a volume."""
+    if volume is not None:
+        # pi h (3 + h^2) / 6 = V
+        return float(2.0 * np.sinh(np.arcsinh(3.0 * volume / np.pi) / 3.0))
+    return float(np.tan(0.5 * np.arcsin(np.clip(0.5 * curvature, -1.0, 1.0))))
+
+
+def _cap(space: Space, rim: float, depth: float) -> Surface:
+    """Spherical cap that hangs below its rim; the ring runs clockwise, so the normal points down.
+
+    Depth and rim radius give the opening: ``tan(turn / 2) = depth / rim``.
+    """
+    turn = 2.0 * np.arctan(depth / rim)
 
     def profile(t: Array) -> tuple[Array, Array, Array]:
-        return a + (rim - a) * t, z * (1.0 - t), np.full_like(t, rim - a)
+        angle = (1.0 - t) * turn
+        over_sine = turn / np.sin(turn) if depth else 1.0
+        r = rim * (1.0 - t) * np.sinc(angle / np.pi) * over_sine
+        rise = 0.5 * (1.0 - t) * angle * np.sinc(0.5 * angle / np.pi) ** 2 * over_sine
+        return r, rim * rise - depth, -rim * np.cos(angle) * over_sine
 
-    space = ring_space(mesh.space, mesh.degree, mesh.elements, angle=1.0)
-    local = axisymmetric(space, profile)
-    return local.moved(local.points * particle.radius)
+    counterclockwise = axisymmetric(space, profile)
+    return counterclockwise.moved(counterclockwise.points * [1.0, -1.0, 1.0])
+
+
+def _check_start(start: Surface, asked: Space) -> None:
+    given = start.space
+    if (given.net_shape, given.degree, given.pole) != (asked.net_shape, asked.degree, asked.pole):
+        raise SceneError(
+            f"start: control net {given.net_shape} of degree {given.degree} given, "
+            f"{asked.net_shape} of degree {asked.degree} expected from the discretization"
+        )
 
 
 def _describe(
-    particle: Sphere,
+    particle: Sphere | None,
     size: float,
     boundary: str,
     liquid: Liquid,
@@ -148,29 +280,26 @@ def _describe(
     pressure: float | None,
     volume: float | None,
     liquid_weight: bool,
-    mesh: Discretization,
+    mesh: Mesh,
     sector: Sector,
 ) -> dict[str, Any]:
     held = {"pressure": pressure, "volume": volume}
+    particles = [] if particle is None else [particle]
     return {
         "scene": "liquid_sheet",
         "liquid": {"surface_tension": liquid.surface_tension, "density": liquid.density},
         "gravity": {"acceleration": gravity, "direction": [0.0, 0.0, -1.0]},
         "particle": [
             {
-                "radius": particle.radius,
-                "center": list(particle.center),
-                "density": particle.density,
-                "contact_angle": particle.contact_angle,
+                "radius": each.radius,
+                "center": list(each.center),
+                "density": each.density,
+                "contact_angle": each.contact_angle,
                 "motion": "fixed",
             }
+            for each in particles
         ],
         "sheet": {"boundary": boundary, "size": size, "liquid_weight": liquid_weight}
         | {key: value for key, value in held.items() if value is not None},
-        "discretization": {
-            "space": mesh.space,
-            "degree": mesh.degree,
-            "elements": mesh.elements,
-            "model": sector.model,
-        },
+        "discretization": mesh.described(sector.model),
     }

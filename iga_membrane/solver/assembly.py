@@ -12,8 +12,8 @@ from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, Table
 from ..surface.motion import Spines
-from ..surface.sector import sector_elements
-from ..surface.supports import Sliding
+from ..surface.sector import sector_table
+from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
 from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm
 from ..terms import variations as vary
@@ -86,12 +86,14 @@ class Assembly:
         surface = scene.local_surface()
         space, sector = surface.space, scene.sector
         self.copies = sector.copies
-        self.spines = Spines(surface, scene.local_supports())
+        self._mirrored = [axis in sector.mirrored for axis in "xyz"]
+        self._supports: tuple[Support, ...] = scene.local_supports()
+        self.spines = Spines(surface, self._supports)
         self.size = self.spines.size
         ring = space.bases[0]
-        around = max(3, ring.degree) if ring.periodic and ring.continuity else ring.degree + 1
+        around = max(3, ring.degree) if ring.periodic and ring.smooth else ring.degree + 1
         self.points = (points, points) if points else (around, space.bases[1].degree + 1)
-        self.table = space.table(self.points, sector_elements(space, sector))
+        self.table = sector_table(space, sector, self.points)
         self.seconds = 0.0
         before = process_time()
         self._kernels = vary.compiled_kernels(len(self.table.functions))
@@ -105,8 +107,11 @@ class Assembly:
         self.load(scene)
 
     def load(self, scene: Scene) -> None:
-        """Take the terms of another scene of the same space and supports."""
-        terms = scene.local_terms()
+        """Take the terms of another scene of the same space, whose supports move the same edges."""
+        terms, supports = scene.local_terms(), scene.local_supports()
+        if supports != self._supports:
+            self._supports = supports
+            self.spines = Spines(scene.local_surface(), supports)
         self.constraints = [t for t in terms if isinstance(t, Constraint)]
         self._tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
         self._bodies = [
@@ -171,14 +176,18 @@ class Assembly:
             total -= float((pull * displacement[edge.functions]).sum())
         return total
 
-    def gap_force(self, surface: Surface, multipliers: Array) -> float:
-        """Vertical force of the line loads on their solids (one sector)."""
+    def gap_force(self, surface: Surface, multipliers: Array) -> Array:
+        """(3,) force of the line loads on their solids (one sector)."""
         loads = self.line_load(multipliers)
-        total = 0.0
+        total = np.zeros(3)
         for gap, edge in self._gaps:
-            push = gap.gradients(edge, surface.points)[..., 2].sum(axis=2)
-            total -= float((loads[edge.functions] * push).sum())
+            push = gap.gradients(edge, surface.points).sum(axis=2)
+            total -= np.einsum("ek,eki->i", loads[edge.functions], push)
         return total
+
+    def whole(self, vector: Array) -> Array:
+        """(3,) sum over all sectors of a vector integrated over one."""
+        return np.asarray(self.copies * np.where(self._mirrored, 0.0, vector))
 
     def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
         area, integrals = vary.energies(self.table, at, [self.body, *self._held])

@@ -15,12 +15,13 @@ from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..surface.motion import Motion
 from ..surface.ring import rational_matrix
-from ..surface.sector import sector_elements
+from ..surface.sector import sector_table
 from ..surface.supports import Fixed, Sector, Symmetry
 from ..surface.surface import Surface
 from ..terms import BodyDensity, LineTerm, SurfaceTension, Term, Volume
 from .assembly import TINY
-from .measures import ContactLine, contact_line, sphere_of, vertical_forces
+from .contact_line import ContactLine, contact_line, vertical_forces
+from .measures import sphere_of
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def audit(
     points : the solver's Gauss points in each direction.
     """
     space, sector = surface.space, scene.sector
-    table = space.table((2 * points[0], 2 * points[1]), sector_elements(space, sector))
+    table = sector_table(space, sector, (2 * points[0], 2 * points[1]))
     k = surface.on(table)
     terms = scene.local_terms()
     tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))

@@ -1,8 +1,11 @@
-"""Forces on a particle under a sheet with a level contact line (paper eqs 35-39).
+"""Forces on a particle: consistent ones, and the paper's (eqs 35-39) beside them.
 
-Consistent forces: the pressure acts on the projected area ``pi a^2``, Archimedes' term on the cap
-points up when paired with the pressure at the contact line, and the line force is what is left of
-``-dE/dz``. The paper's formulas, with the cap's area ``2 pi r b``, stand beside them.
+The force of membrane and liquid is ``-dE/d(position)`` of the particle, the membrane carried along
+by a shift that fades towards the rim: it converges like the energy, which a line integral does
+not. The liquid's part of it is ``-int p n dA`` over the wetted cap; what is left is the line's.
+Archimedes' term is the weight of liquid between the wetted cap and the cone from the line to its
+centroid, upwards; the rest of the liquid's part is the hydrostatic force, for a level line
+``-pi a^2`` times the pressure at its height.
 """
 
 from __future__ import annotations
@@ -12,57 +15,152 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arrays import Array
 from ..scenes.scene import Scene
 from ..solids import Sphere
+from ..splines import points_of
+from ..surface.surface import Surface
+from ..terms import BodyDensity
+from .assembly import Assembly
+from .contact_line import ContactLine, contact_line
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ParticleForces:
-    """Vertical forces on a particle, up positive, in the user's units.
+    """Forces on a particle in world axes, in the user's units.
 
     Attributes
     ----------
-    weight : F_G; line : F_CL; hydrostatic : F_H, the pressure at the contact line on the projected
-        area; buoyancy : F_B of the liquid between line and cap; effective : F_e, their sum.
-    paper : F_G, F_CL, F_H, F_B_up, F_B_down, F_e_up, F_e_down by the paper's formulas.
+    weight : (3,) F_G; contact_line : F_CL; hydrostatic : F_H; buoyancy : F_B.
+    torque : (3,) about the centre: zero, as the energy does not change when a sphere of one
+        contact angle turns.
+    paper : F_G, F_CL, F_H, F_B_up, F_B_down, F_e_up, F_e_down by the paper's formulas, up positive.
     """
 
-    weight: float
-    line: float
-    hydrostatic: float
-    buoyancy: float
+    weight: Array
+    contact_line: Array
+    hydrostatic: Array
+    buoyancy: Array
+    torque: Array
     paper: Mapping[str, float] = field(repr=False)
 
     @property
-    def effective(self) -> float:
-        """Paper eq. (39)."""
-        return self.weight + self.line + self.hydrostatic + self.buoyancy
+    def effective(self) -> Array:
+        """(3,) F_e, paper eq. (39)."""
+        return self.weight + self.contact_line + self.hydrostatic + self.buoyancy
 
     @property
     def lifts(self) -> bool:
         """Whether the liquid pulls the particle up."""
-        return self.effective > 0
+        return bool(self.effective[2] > 0)
 
 
-def particle_forces(scene: Scene, measures: Mapping[str, float], pull: float) -> ParticleForces:
-    """Forces on the particle of a sheet.
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """What membrane and liquid do to a sphere (dimensionless, full body).
 
-    Parameters
+    Attributes
     ----------
-    measures : of the state.
-    pull : acceleration along -z. It weighs the particle and the liquid on it, also where the
-        sheet itself is computed without weight.
+    total : (3,) force; pressure : (3,) the liquid's part of it.
     """
-    particle = scene.substrate
-    assert isinstance(particle, Sphere)
-    density = scene.liquid_density
-    r, a, height = particle.radius, measures["contact_radius"], measures["cap_height"]
-    at_line = measures["pressure"] - density * pull * measures["z_contact"]
-    weight = -4.0 / 3.0 * np.pi * r**3 * particle.density * pull
-    buoyancy = density * pull * measures["V_cap"]
-    on_cap = -measures["pressure"] * 2.0 * np.pi * r * height
-    line = measures["F_CL"]
-    paper = {
+
+    total: Array
+    pressure: Array
+
+
+def pull_on_sphere(assembly: Assembly, surface: Surface, multipliers: Array) -> Pull:
+    """Force on the sphere that carries the membrane's line."""
+    (term, edge), body = assembly.lines[0], assembly.density(multipliers)
+    points = surface.points
+    moment = term.energy(edge, points, 0.0, BodyDensity(1.0))
+    x, dx = edge.values @ points[edge.functions], edge.d @ points[edge.functions]
+    # vector area of the cap, and int z n dA: its horizontal parts by Stokes' theorem
+    area = 0.5 * np.einsum("eqi,eq->i", np.cross(x, dx), edge.weights)
+    square = 0.5 * x[..., 2] ** 2 * edge.weights
+    first = np.array([-(square * dx[..., 1]).sum(), (square * dx[..., 0]).sum(), -moment])
+    pressure = body.constant * area + body.gradient[2] * first
+    total = term.forces(edge, points, term.strength, body).sum(axis=(0, 1))
+    # raising the cap changes the body integrals under it; shifting it sideways does not
+    total[2] += pressure[2]
+    total += assembly.gap_force(surface, multipliers)
+    fading = 1.0 - surface.space.abscissae[..., 1]
+    along = points_of(surface.space, fading[..., None])
+    for i in range(3):
+        total[i] -= assembly.work(surface, multipliers, along * np.eye(3)[i])
+    whole = assembly.whole
+    return Pull(whole(total), whole(pressure))
+
+
+def volume_over_cone(line: ContactLine, solid: Sphere) -> float:
+    """Volume between the wetted cap and the cone from its line to the line's centroid.
+
+    ``1/3 int (x - apex) . n dA`` over the cap; the cone itself adds nothing.
+    """
+    apex = line.arc @ line.position / line.arc.sum()
+    away = line.position - np.array(solid.center)
+    vector = 0.5 * line.arc @ np.cross(line.position, line.tangent)
+    turn = (away[:, 0] * line.tangent[:, 1] - away[:, 1] * line.tangent[:, 0]) * line.arc
+    polar = np.arctan2(np.hypot(away[:, 0], away[:, 1]), away[:, 2])
+    area = solid.radius**2 * ((1.0 - np.cos(polar)) / (away[:, 0] ** 2 + away[:, 1] ** 2)) @ turn
+    return float(solid.radius * area + (np.array(solid.center) - apex) @ vector) / 3.0
+
+
+def particle_forces(
+    scene: Scene,
+    assembly: Assembly,
+    surface: Surface,
+    multipliers: Array,
+    measures: Mapping[str, float],
+) -> tuple[ParticleForces, ...]:
+    """Forces on the particle of a sheet; none where the scene has no particle.
+
+    Notes
+    -----
+    The scene's ``particle_pull`` weighs the particle and the liquid on it, also where the sheet
+    itself is computed without weight.
+    """
+    particle, scale = scene.substrate, scene.units
+    if scene.kind != "liquid_sheet" or not isinstance(particle, Sphere):
+        return ()
+    pull = pull_on_sphere(assembly, surface, multipliers)
+    line = contact_line(surface, solid=scale.local_sphere(particle))
+    up, g, rho = np.array([0.0, 0.0, 1.0]), scene.particle_pull, scene.liquid_density
+    pressed = pull.pressure * scale.force
+    if g and not assembly.body.gradient[2]:
+        # a sheet without weight still carries weighty liquid: p0 - rho g z on the cap
+        pressed = pressed + _weight_on_cap(line, scale.local_sphere(particle)) * (
+            rho * g * scale.length**3
+        )
+    buoyancy = rho * g * measures["V_cap"] * up
+    weight = -4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g * up
+    contact = (pull.total - pull.pressure) * scale.force
+    paper = _paper(particle, measures, float(weight[2]), float(contact[2]), float(buoyancy[2]))
+    return (ParticleForces(weight, contact, pressed - buoyancy, buoyancy, np.zeros(3), paper),)
+
+
+def _weight_on_cap(line: ContactLine, solid: Sphere) -> Array:
+    """(3,) ``int z n dA`` over the wetted cap, by integrals along its line."""
+    x, arc = line.position, line.arc
+    square = 0.5 * x[:, 2] ** 2 * arc
+    apex = arc @ x / arc.sum()
+    # vertical part: the volume over the cone, and the cone's own int z n_z dA by triangles
+    chord = np.cross(x - apex, line.tangent) * 0.5
+    cone = ((apex[2] + 2.0 * x[:, 2]) / 3.0 * chord[:, 2]) @ arc
+    return np.array(
+        [
+            -square @ line.tangent[:, 1],
+            square @ line.tangent[:, 0],
+            volume_over_cone(line, solid) + cone,
+        ]
+    )
+
+
+def _paper(
+    particle: Sphere, measures: Mapping[str, float], weight: float, line: float, buoyancy: float
+) -> dict[str, float]:
+    """Eqs (35)-(39) with the pressure on the cap's area ``2 pi r b`` and F_B either way."""
+    on_cap = -measures["pressure"] * 2.0 * np.pi * particle.radius * measures["cap_height"]
+    return {
         "F_G": weight,
         "F_CL": line,
         "F_H": on_cap,
@@ -71,4 +169,3 @@ def particle_forces(scene: Scene, measures: Mapping[str, float], pull: float) ->
         "F_e_up": weight + line + on_cap + buoyancy,
         "F_e_down": weight + line + on_cap - buoyancy,
     }
-    return ParticleForces(weight, line, -np.pi * a**2 * at_line, buoyancy, paper)

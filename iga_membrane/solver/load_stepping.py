@@ -1,29 +1,33 @@
-"""Load stepping with halving: the way round where a direct solve fails."""
+"""Load stepping with halving: along a path that was asked for, or round a direct solve that
+fails."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..errors import GeometryError
 from ..scenes.scene import Ramp, Scene
-from ..surface.reparametrize import arc_length
+from ..surface.reparametrize import regridded
 from .assembly import Assembly
 from .linear import SingularMatrix
 from .newton import NewtonOptions, NewtonResult, newton
-from .stability import stability_of
+from .stability import Stability, stability_of
 from .status import Status
 
 
 @dataclass(frozen=True)
 class LoadStep:
-    """One attempted load: its Newton iterations and how it ended (None: converged)."""
+    """One attempted load: the parameter's value there, the Newton iterations and how they ended
+    (None: converged); on a path that was asked for, the measures at its values."""
 
     load: float
     iterations: int
     status: Status | None
+    value: float | None = None
+    measures: Mapping[str, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,9 @@ class Bracket:
     ----------
     parameter : its path in the scene file; lo : the last value with a stable equilibrium, hi : the
         first without.
-    index_lo, index_hi : negative eigenvalues of the Hessian there; at ``hi`` of the last iterate.
+    index_lo, index_hi : negative eigenvalues of the stable equilibrium at ``lo`` and of the one
+        that meets it at the limit, beyond the fold of the path; where no such state was found,
+        of the last iterate at ``hi``.
     """
 
     parameter: str
@@ -69,43 +75,55 @@ def load_stepping(
     options: NewtonOptions,
     smallest: float,
     report: Callable[[float], None] = lambda load: None,
+    reached: Callable[[Scene, NewtonResult], None] = lambda scene, result: None,
 ) -> LoadPath:
     """From the ramp's own start at load 0 to load 1, in steps that grow and halve.
 
     Parameters
     ----------
-    ramp : its scenes share the assembly's space and supports.
+    ramp : its scenes share the assembly's space and the edges that move.
     smallest : step of the load below which to give up: LIMIT_POINT if the smallest eigenvalue
         foretells a fold there, else STALLED.
     report : called with every load reached.
+    reached : called with the scene and the state at each of the ramp's values.
     """
     scene = ramp(0.0)
     assembly.load(scene)
-    result = newton(assembly, scene.local_surface(), None, scene.grading, options)
-    path = LoadPath(result, scene, [LoadStep(0.0, len(result.iterations), result.status)])
+    result = newton(assembly, scene.local_surface(), None, scene.meridian_grading, options)
+    first = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0))
+    path = LoadPath(result, scene, [first])
     if result.status is not None:
         return path
+    reached(scene, result)
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
-    step = 0.25
+    step, stops = 0.25, ramp.stops
     while path.last_good < 1.0:
-        load = min(1.0, path.last_good + step)
-        result = _attempt(assembly, path, ramp(load), attempts)
-        path.steps.append(LoadStep(load, len(result.iterations), result.status))
+        stop = float(stops[np.searchsorted(stops, path.last_good, "right")])
+        load = min(stop, path.last_good + step)
+        scene = ramp(load)
+        result = _attempt(assembly, path, scene, attempts)
+        tried = LoadStep(load, len(result.iterations), result.status, ramp.value(load))
+        path.steps.append(tried)
         if result.status is None and result.index <= 0:
-            path.result, path.scene, path.last_good = result, ramp(load), load
+            path.result, path.scene, path.last_good = result, scene, load
             report(load)
+            if load == stop:
+                reached(scene, result)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
         elif result.status is Status.INTERRUPTED:
             path.result.status, path.result.message = result.status, result.message
             break
         else:
-            step *= 0.5
-            if step < smallest:
+            step = 0.5 * min(step, load - path.last_good)
+            lo, hi = ramp.value(path.last_good), ramp.value(load)
+            if step < smallest and abs(hi - lo) <= BRACKET * max(abs(lo), abs(hi)):
                 _give_up(assembly, path, ramp, load, result, attempts)
                 break
     return path
 
 
+BRACKET = 4e-4
+"""Width of a bracket over the parameter's value."""
 PATIENCE = 20
 """Newton iterations of one attempt: a load that needs more is approached by shorter steps."""
 FOLD = 3.0
@@ -121,10 +139,12 @@ def _attempt(
     # what the start knows of the parameter, moved rims above all, comes with it
     shift = scene.local_surface().points - path.scene.local_surface().points
     try:
-        start = arc_length(good.surface.moved(good.surface.points + shift), scene.grading)
+        moved = good.surface.moved(good.surface.points + shift)
+        grading = scene.meridian_grading
+        start = moved if grading is None else regridded(moved, grading)
     except (GeometryError, np.linalg.LinAlgError) as error:
         return NewtonResult(good.surface, good.multipliers, Status.NONFINITE, str(error))
-    return newton(assembly, start, good.multipliers, scene.grading, options)
+    return newton(assembly, start, good.multipliers, scene.meridian_grading, options)
 
 
 def _give_up(
@@ -144,30 +164,55 @@ def _give_up(
     step = load - path.last_good
     back = max(0.0, path.last_good - step)
     earlier = _attempt(assembly, path, ramp(back), options)
-    softer = _stiffness(assembly, earlier) if earlier.status is None else 0.0
+    softer = _verdict(assembly, earlier) if earlier.status is None else None
     assembly.load(path.scene)
-    left = _stiffness(assembly, path.result)
-    fall = softer**2 - left**2
+    verdict = _verdict(assembly, path.result)
+    left = verdict.smallest if verdict else 0.0
+    fall = (softer.smallest if softer else 0.0) ** 2 - left**2
     ahead = left**2 * (path.last_good - back) / fall if fall > 0 else np.inf
     if ahead <= FOLD * step:
         path.result.status = Status.LIMIT_POINT
-        path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, failed.index)
+        beyond = _beyond_fold(assembly, path.result, verdict, options) if verdict else None
+        index = failed.index if beyond is None else beyond
+        path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, index)
         path.result.message = (
             f"no equilibrium beyond {ramp.parameter} = {lo:.6g} (none found at {hi:.6g}; "
-            f"{ramp.end:.6g} was asked for): the smallest eigenvalue has fallen to {left:.2g}"
+            f"{ramp.values[-1]:.6g} was asked for): the smallest eigenvalue has fallen to "
+            f"{left:.2g}"
         )
         return
     reason = failed.message or f"{failed.index} negative eigenvalues"
     path.result.status = Status.STALLED
     path.result.message = (
-        f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.end:.6g}, with steps of "
-        f"{hi - lo:.1e} ({reason})"
+        f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.values[-1]:.6g}, with "
+        f"steps of {hi - lo:.1e} ({reason})"
     )
 
 
-def _stiffness(assembly: Assembly, state: NewtonResult) -> float:
-    """Smallest eigenvalue of a state of the load taken last."""
+def _verdict(assembly: Assembly, state: NewtonResult) -> Stability | None:
+    """Stability of a state of the load taken last."""
     try:
-        return stability_of(assembly, state.surface, state.multipliers).smallest
+        return stability_of(assembly, state.surface, state.multipliers)
     except (SingularMatrix, np.linalg.LinAlgError):
-        return 0.0
+        return None
+
+
+def _beyond_fold(
+    assembly: Assembly, state: NewtonResult, verdict: Stability, options: NewtonOptions
+) -> int | None:
+    """Index of the equilibrium of the same load on the other side of the fold, or None.
+
+    Near a fold the two differ by a multiple of the softest motion, so Newton's method without
+    descent is started that way at growing distances.
+    """
+    plain = replace(options, near=np.inf)
+    motion = assembly.spines.on(state.surface)
+    along = motion.displacement(verdict.mode)
+    along /= np.linalg.norm(along, axis=1).max()
+    for distance in np.geomspace(0.01, 0.3, 6):
+        for sign in (1.0, -1.0):
+            start = state.surface.moved(state.surface.points + sign * distance * along)
+            other = newton(assembly, start, state.multipliers, None, plain)
+            if other.status is None and other.index == state.index + 1:
+                return other.index
+    return None

@@ -3,107 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
 from ..solids import Sphere
-from ..splines import points_of
-from ..splines.quadrature import gauss
-from ..splines.space import EDGES
 from ..surface.surface import Surface
 from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
 from ..terms import variations as vary
-from ..terms.contact_line import wetted_area
 from .assembly import Assembly
-
-
-@dataclass(frozen=True, eq=False)
-class ContactLine:
-    """Geometry along a contact line, at quadrature points of the whole line.
-
-    Attributes
-    ----------
-    position, tangent, conormal : (k, 3); unit tangent ``a_c`` along the edge's parameter, unit
-        conormal tangent to the membrane and out of it.
-    angle : (k,) between membrane and solid through the liquid, radians.
-    arc : (k,) quadrature weights of arc length.
-    """
-
-    position: Array
-    tangent: Array
-    conormal: Array
-    angle: Array
-    arc: Array
-
-
-def contact_line(
-    surface: Surface,
-    edge: str = "xi2=0",
-    points: int | None = None,
-    solid: Sphere | None = None,
-) -> ContactLine:
-    """Line geometry from exact spline tangents (paper eqs 33-34).
-
-    Parameters
-    ----------
-    solid : what the edge lies on; None is the plane z = 0.
-    """
-    space = surface.space
-    along, end = EDGES[edge]
-    basis = space.bases[along]
-    u, w = gauss(points or space.degree + 1)
-    t = (basis.breaks[:-1, None] + basis.sizes[:, None] * u).ravel()
-    xi = np.empty((len(t), 2))
-    xi[:, along] = t
-    xi[:, 1 - along] = space.bases[1 - along].breaks[-end]
-    k = surface.at(xi, 1)
-    speed = np.linalg.norm(k.tangents[:, along], axis=1)
-    tangent = k.tangents[:, along] / speed[:, None]
-    conormal = np.cross(tangent, k.normal)
-    # out of the membrane: against the other tangent at its start, along it at its end
-    across = np.einsum("ki,ki->k", conormal, k.tangents[:, 1 - along])
-    conormal = np.where(((across > 0) == (end == 0))[:, None], -conormal, conormal)
-    up = np.array([[0.0, 0.0, 1.0]]) if solid is None else solid.normal(k.position)
-    # atan2 keeps its digits where the membrane is nearly tangent to the solid
-    tilt = np.linalg.norm(np.cross(k.normal, up), axis=1)
-    angle = np.arctan2(tilt, np.einsum("ki,ki->k", k.normal, np.broadcast_to(up, k.normal.shape)))
-    weights = speed * (basis.sizes[:, None] * w).ravel()
-    return ContactLine(k.position, tangent, conormal, angle, weights)
-
-
-@dataclass(frozen=True)
-class VerticalForces:
-    """What acts on the wetted part of the plane z = 0, positive downwards (dimensionless).
-
-    Attributes
-    ----------
-    wet_area : inside the line.
-    push : of the pressure on it.
-    line : pull of the membrane upwards with Young's angle; measured : with the spline's tangents.
-    """
-
-    wet_area: float
-    push: float
-    line: float
-    measured: float
-
-
-def vertical_forces(
-    line: ContactLine, body: BodyDensity, tension: float, contact_angle: float
-) -> VerticalForces:
-    """Forces on the wetted plane from the line alone, by Green's theorem (counterclockwise)."""
-    x, y = line.position[:, 0], line.position[:, 1]
-    nx, ny = line.tangent[:, 1] * line.arc, -line.tangent[:, 0] * line.arc
-    wet = float(0.5 * (x @ nx + y @ ny))
-    mx, my = float(0.5 * (x * x) @ nx), float(0.5 * (y * y) @ ny)
-    gx, gy, _ = body.gradient
-    push = -(body.constant * wet + gx * mx + gy * my)
-    young = tension * np.sin(np.radians(contact_angle)) * float(line.arc.sum())
-    measured = -tension * float(line.conormal[:, 2] @ line.arc)
-    return VerticalForces(wet, push, young, measured)
+from .contact_line import ContactLine, contact_line
+from .forces import pull_on_sphere, volume_over_cone
 
 
 def measures(
@@ -215,51 +126,31 @@ def _droplet(
 def _sheet(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> dict[str, float]:
-    """Contact on the particle and the vertical forces of sheet and liquid on it."""
+    """Contact on the particle, as means along the line, and the vertical forces on it."""
     scale, solid = scene.units, sphere_of(scene)
-    assert solid is not None
-    term, edge = assembly.lines[0]
-    wet = assembly.copies * term.energy(edge, surface.points, 1.0, BodyDensity())
-    share = wet / (2.0 * np.pi * solid.radius**2)
-    polar = 2.0 * float(np.arcsin(np.sqrt(0.5 * share)))
-    height = solid.radius * share
-    total, push = vertical_pull(assembly, surface, multipliers)
+    if solid is None:
+        return {"sag": -float(_farthest(surface, lambda x: -x[..., 2])[2]) * scale.length}
+    forces = pull_on_sphere(assembly, surface, multipliers)
     line = contact_line(surface, solid=solid)
+    length = float(line.arc.sum())
+    away = line.position - np.array(solid.center)
+    radius = np.linalg.norm(away[:, :2], axis=1)
+    polar = float(np.arctan2(radius, away[:, 2]) @ line.arc) / length
+    height = solid.radius - float(away[:, 2] @ line.arc) / length
+    gamma = assembly.lines[0][0].gamma
     return {
         "phi_deg": float(np.degrees(polar)),
-        "psi_deg": 180.0 - float(np.degrees(np.arccos(-term.strength / term.gamma) + polar)),
-        "contact_radius": solid.radius * float(np.sin(polar)) * scale.length,
+        "psi_deg": 180.0 - solid.contact_angle - float(np.degrees(polar)),
+        "contact_radius": float(radius @ line.arc) / length * scale.length,
         "cap_height": height * scale.length,
-        "z_contact": (solid.center[2] + solid.radius - height) * scale.length,
-        "V_cap": np.pi * height**2 * (solid.radius - height / 3.0) * scale.length**3,
-        "F_total": total * scale.force,
-        "F_P": push * scale.force,
-        "F_CL": (total - push) * scale.force,
-        "F_CL_line": -float(line.conormal[:, 2] @ line.arc) * term.gamma * scale.force,
-        "contact_angle_measured": float(np.degrees(line.angle @ line.arc / line.arc.sum())),
+        "z_contact": float(line.position[:, 2] @ line.arc) / length * scale.length,
+        "V_cap": volume_over_cone(line, solid) * scale.length**3,
+        "F_total": float(forces.total[2]) * scale.force,
+        "F_P": float(forces.pressure[2]) * scale.force,
+        "F_CL": float(forces.total[2] - forces.pressure[2]) * scale.force,
+        "F_CL_line": -float(line.conormal[:, 2] @ line.arc) * gamma * scale.force,
+        "contact_angle_measured": float(np.degrees(line.angle @ line.arc / length)),
     }
-
-
-def vertical_pull(assembly: Assembly, surface: Surface, multipliers: Array) -> tuple[float, float]:
-    """Upward force on the sphere and the pressure's part of it (dimensionless, full body).
-
-    The force is ``-dE/dz`` of the sphere, the membrane carried along by a shift that fades linearly
-    towards the other edge: it converges like the energy, which the line integral does not. With
-    ``e`` the body density, so minus the pressure, the pressure's part is
-    ``int_W e N_z dA = e_0 A_projected + e_z int_W z N_z dA``.
-    """
-    (term, edge), body = assembly.lines[0], assembly.density(multipliers)
-    points = surface.points
-    projected = wetted_area(edge, points)
-    moment = -term.energy(edge, points, 0.0, BodyDensity(1.0))
-    push = body.constant * projected + body.gradient[2] * moment
-    lift = float(term.forces(edge, points, term.strength, body)[..., 2].sum())
-    held = assembly.gap_force(surface, multipliers)
-    fading = 1.0 - surface.space.abscissae[..., 1]
-    carried = np.zeros((surface.space.count, 3))
-    carried[:, 2] = points_of(surface.space, fading[..., None])[:, 0]
-    work = assembly.work(surface, multipliers, carried)
-    return assembly.copies * (lift + push + held - work), assembly.copies * push
 
 
 def sphere_of(scene: Scene) -> Sphere | None:

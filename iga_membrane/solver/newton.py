@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import GeometryError
 from ..splines import Grading
-from ..surface.reparametrize import arc_length, distortion
+from ..surface.reparametrize import distortion, regridded
 from ..surface.surface import Surface
 from .assembly import Assembly, System
 from .linear import Bordered, SingularMatrix
@@ -174,7 +174,7 @@ def _iterate(
             small = size * taken <= options.polish_below
             allowed = POLISHED if small else DISTORTED
             if distortion(result.surface, grading) > allowed:
-                result.surface = arc_length(result.surface, grading)
+                result.surface = regridded(result.surface, grading)
                 polish -= small
     raise _Stop(Status.MAX_ITER, f"{options.max_iterations} iterations did not converge")
 

@@ -36,7 +36,7 @@ class Solution:
     index : negative eigenvalues; lambda_min : smallest one (tension over squared length).
     audit : relative defects found by the independent check, or None.
     hold_force : (3,) total force that holds the centroid.
-    forces : on the particle, where there is one.
+    forces : on each particle.
     contact : wetted area, support force, penetration, by the names of the result file.
     bracket : of the limit point where the status is LIMIT_POINT.
     iterations : the Newton iterations; load_steps : the loads tried.
@@ -55,7 +55,7 @@ class Solution:
     audit: Audit | None = field(repr=False)
     hold_force: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), repr=False)
     contact: Mapping[str, float | None] = field(default_factory=dict, repr=False)
-    forces: ParticleForces | None = None
+    forces: tuple[ParticleForces, ...] = ()
     unknowns: int = 0
     iterations: Sequence[Iteration] = field(default=(), repr=False)
     load_steps: Sequence[LoadStep] = field(default=(), repr=False)

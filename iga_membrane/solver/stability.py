@@ -27,11 +27,13 @@ class Stability:
     index : number of negative eigenvalues.
     smallest : eigenvalue of smallest magnitude, negative if the index is not 0.
     error : how far ``smallest`` still moved in the last iteration.
+    mode : (n,) its motion of the unknowns.
     """
 
     index: int
     smallest: float
     error: float
+    mode: Array
 
     @property
     def marginal(self) -> bool:
@@ -82,7 +84,7 @@ def stability(
         error, smallest = abs(float(values[critical]) - smallest), float(values[critical])
         if error <= 1e-6 * abs(smallest):
             break
-    return Stability(factor.index, smallest, error)
+    return Stability(factor.index, smallest, error, vectors[:, critical])
 
 
 def _inverse(factor: Bordered, columns: Array, m: int) -> Array:

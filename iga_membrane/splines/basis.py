@@ -7,6 +7,7 @@ live on which element, so everything above sees one class.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -31,6 +32,7 @@ class Basis:
     abscissae : (n,) the point of each function: Greville point or node.
     continuity : continuous derivatives at element boundaries.
     periodic : whether the ends of the domain are joined.
+    joints : parameters inside the domain where patches meet, with continuity 0.
     knots : the clamped knot vector of a B-spline basis on a line, else None.
     """
 
@@ -42,6 +44,12 @@ class Basis:
     continuity: int
     periodic: bool = False
     knots: Array | None = field(default=None, repr=False)
+    joints: tuple[float, ...] = ()
+
+    @property
+    def smooth(self) -> bool:
+        """Whether derivatives are continuous everywhere."""
+        return self.continuity >= 1 and not self.joints
 
     @property
     def count(self) -> int:
@@ -92,7 +100,7 @@ class Basis:
 
         Where the basis has a kink (a node between two Lagrange elements), the mean of both sides.
         """
-        if self.continuity >= 1:
+        if self.smooth:
             return self.matrix(self.abscissae, 1)
         step = 1e-9 * self.sizes.min()
         inside = (
@@ -132,20 +140,40 @@ def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basi
     )
 
 
-def periodic_basis(elements: int, degree: int, length: float = 1.0) -> Basis:
-    """Uniform B-splines on a ring; function ``i`` starts at element ``i``."""
+def periodic_basis(
+    elements: int, degree: int, length: float = 1.0, joints: Sequence[int] = ()
+) -> Basis:
+    """B-splines on a ring of equal elements; function ``i`` starts at knot ``i``.
+
+    Parameters
+    ----------
+    joints : elements at whose start patches meet with continuity 0.
+    """
     if degree < 2:
         raise SceneError(f"degree {degree} is not C1: C1 needed, so degree >= 2 (got {degree})")
     if elements <= degree:
         raise SceneError(f"elements = {elements}: a ring of degree {degree} needs > {degree}")
     size = length / elements
-    window = np.arange(1 - degree, degree + 1) * size
-    operators = np.repeat(extraction(window[None], degree), elements, axis=0)
-    element = np.arange(elements)
-    functions = (element[:, None] - degree + np.arange(degree + 1)) % elements
-    abscissae = (element + 0.5 * (degree + 1)) * size % length
-    breaks = np.linspace(0.0, length, elements + 1)
-    return Basis(degree, breaks, operators, functions, abscissae, degree - 1, periodic=True)
+    multiplicity = np.ones(elements, int)
+    multiplicity[list(joints)] = degree
+    knots = np.repeat(np.arange(elements), multiplicity)
+    count = len(knots)
+    last = np.cumsum(multiplicity) - 1  # the knot at which each element starts
+    around = last[:, None] + np.arange(1 - degree, degree + 1)
+    windows = knots[around % count] + elements * (around // count)
+    functions = (last[:, None] - degree + np.arange(degree + 1)) % count
+    ahead = np.arange(count)[:, None] + np.arange(1, degree + 1)
+    abscissae = (knots[ahead % count] + elements * (ahead // count)).mean(axis=1) % elements
+    return Basis(
+        degree,
+        np.linspace(0.0, length, elements + 1),
+        extraction(windows * size, degree),
+        functions,
+        abscissae * size,
+        degree - 1,
+        periodic=True,
+        joints=tuple(size * j for j in joints),
+    )
 
 
 def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) -> Basis:
@@ -174,8 +202,11 @@ def line_basis(kind: str, elements: int, degree: int) -> Basis:
     return bspline_basis(open_knots(breaks, degree), degree)
 
 
-def ring_basis(kind: str, elements: int, degree: int, length: float) -> Basis:
-    """Uniform basis on a ring of circumference ``length``."""
+def ring_basis(
+    kind: str, elements: int, degree: int, length: float, joints: Sequence[int] = ()
+) -> Basis:
+    """Uniform basis on a ring of circumference ``length``; ``joints`` as in
+    :func:`periodic_basis`."""
     if kind == "lagrange":
         return lagrange_basis(np.linspace(0.0, length, elements + 1), degree, periodic=True)
-    return periodic_basis(elements, degree, length)
+    return periodic_basis(elements, degree, length, joints)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..splines import Grading, net_of, points_of
+from ..splines import Grading, Space, net_of, points_of
 from ..splines.quadrature import gauss
 from .ring import meridian_interpolation, rational_matrix
 from .surface import Surface
@@ -98,3 +98,85 @@ def arc_length(
         rows[-2] = factor * rational_matrix(space, end, 1)[0]
     net = np.einsum("jk,ikc->ijc", np.linalg.solve(matrix, rows), net_of(space, surface.points))
     return surface.moved(points_of(space, net))
+
+
+def regridded(surface: Surface, grading: Grading) -> Surface:
+    """The same shape, walked by arc length along meridians and, where a ring has joints, by
+    azimuth round it."""
+    if not surface.space.bases[0].joints:
+        return arc_length(surface, grading)
+    return each_arc_length(straightened(surface), grading)
+
+
+def each_arc_length(surface: Surface, grading: Grading) -> Surface:
+    """The same shape, each meridian of an open ring walked by its own arc length.
+
+    For rims whose corners make meridians of different lengths: a mean, as in :func:`arc_length`,
+    would keep the irregularities beside the joints.
+    """
+    space = surface.space
+    ring, meridian = space.bases
+    lines = np.tensordot(ring.matrix(ring.abscissae), surface.net, axes=1)
+    u, w = gauss(space.degree + 3)
+
+    def speed(t: Array) -> Array:
+        rows = rational_matrix(space, t.ravel(), 1).reshape(*t.shape, -1)
+        velocity = np.einsum("i...k,ikc->i...c", rows, lines)
+        return np.asarray(np.linalg.norm(velocity, axis=-1))
+
+    def walked(start: Array, end: Array) -> Array:
+        t = start[..., None] + (end - start)[..., None] * u
+        return np.asarray((end - start) * (speed(t) @ w))
+
+    breaks = meridian.breaks
+    pieces = walked(*(np.tile(side, (ring.count, 1)) for side in (breaks[:-1], breaks[1:])))
+    cumulated = np.concatenate([np.zeros((ring.count, 1)), np.cumsum(pieces, axis=1)], axis=1)
+    points, matrix = meridian_interpolation(space)
+    wanted = cumulated[:, -1:] * grading.fraction(points)
+    t = np.stack([np.interp(s, c, breaks) for s, c in zip(wanted, cumulated, strict=True)])
+    for _ in range(30):
+        element = np.clip(np.searchsorted(breaks, t, "right") - 1, 0, len(breaks) - 2)
+        so_far = np.take_along_axis(cumulated, element, 1) + walked(breaks[element], t)
+        step = (so_far - wanted) / speed(t)
+        t = np.clip(t - step, breaks[0], breaks[-1])
+        if np.abs(step).max() <= 1e-13:
+            break
+    rows = rational_matrix(space, t.ravel()).reshape(*t.shape, -1)
+    values = np.einsum("ijk,ikc->ijc", rows, lines)
+    return _interpolated(space, values, matrix)
+
+
+def straightened(surface: Surface) -> Surface:
+    """The same shape, control points of a ring spread so that ``xi1`` is the azimuth.
+
+    The azimuth is taken about a point that moves with ``xi2`` from the middle of the inner edge to
+    that of the outer one. Where patches meet on a ring, steps along the spines leave bumps of the
+    parametrization beside the joints; without them the space has its full order.
+    """
+    space = surface.space
+    ring, meridian = space.bases
+    points, matrix = meridian_interpolation(space)
+    xi = np.stack(np.meshgrid(ring.abscissae, points, indexing="ij"), axis=-1)
+    ends = np.array([surface.net[:, k, :2].mean(axis=0) for k in (0, -1)])
+    part = (points - meridian.breaks[0]) / (meridian.breaks[-1] - meridian.breaks[0])
+    middle = (1.0 - part)[:, None] * ends[0] + part[:, None] * ends[1]
+    turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
+    for _ in range(20):
+        k = surface.at(xi, 1)
+        x, y = np.moveaxis(k.position[..., :2] - middle, -1, 0)
+        dx, dy = np.moveaxis(k.tangents[..., 0, :2], -1, 0)
+        off = np.arctan2(y, x) - turn * ring.abscissae[:, None]
+        off = (off + np.pi) % (2.0 * np.pi) - np.pi
+        step = off * (x * x + y * y) / (x * dy - y * dx)
+        xi[..., 0] -= step
+        if np.abs(step).max() <= 1e-14 * (ring.breaks[-1] - ring.breaks[0]):
+            break
+    return _interpolated(space, surface.at(xi, 1).position, matrix)
+
+
+def _interpolated(space: Space, values: Array, matrix: Array) -> Surface:
+    """Surface with given values (n1, n2, 3) at the abscissae of a ring space."""
+    ring = space.bases[0]
+    along = np.linalg.solve(ring.matrix(ring.abscissae), values.reshape(ring.count, -1))
+    net = np.einsum("jk,ikc->ijc", np.linalg.inv(matrix), along.reshape(values.shape))
+    return Surface(space, points_of(space, net))

@@ -18,7 +18,6 @@ from ..splines import (
     close_pole,
     line_basis,
     points_of,
-    ring_angles,
     ring_basis,
     tensor_space,
 )
@@ -27,7 +26,13 @@ from .surface import Surface
 
 
 def ring_space(
-    kind: str, degree: int, elements: int, sectors: int = 8, *, angle: float = 0.5 * np.pi
+    kind: str,
+    degree: int,
+    elements: int,
+    sectors: int = 8,
+    *,
+    angle: float = 0.5 * np.pi,
+    corners: bool = False,
 ) -> Space:
     """Open ring patch.
 
@@ -37,12 +42,15 @@ def ring_space(
     elements : along the meridian; the ring has twice as many, rounded up to whole sectors.
     sectors : the ring's elements are a multiple of it.
     angle : "nurbs": opening (radians) of the arc that the weights make exact along the meridian.
+    corners : four patches that meet on the diagonals with continuity 0, for a square rim; each
+        eighth of the ring then has ``elements`` elements.
     """
-    around = sectors * max(1, -(-2 * elements // sectors))
+    around = 8 * elements if corners else sectors * max(1, -(-2 * elements // sectors))
     polynomial = "lagrange" if kind == "lagrange" else "bspline"
     if polynomial == "bspline":
         around = max(around, sectors * -(-(degree + 1) // sectors))
-    ring = ring_basis(polynomial, around, degree, 2.0 * np.pi)
+    joints = [around // 8 * k for k in (1, 3, 5, 7)] if corners else []
+    ring = ring_basis(polynomial, around, degree, 2.0 * np.pi, joints)
     meridian = line_basis(polynomial, elements, degree)
     weights = None
     if kind == "nurbs":
@@ -115,17 +123,28 @@ def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Ar
     if space.pole == 1:
         r[-2], z[-2] = slope[-2], 0.0
     r, z = np.linalg.solve(matrix, np.stack([r, z], axis=1)).T
-    angles = ring_angles(space)
-    r = r / _circle_amplitude(space.bases[0], angles)
-    net = np.stack([np.outer(np.cos(angles), r), np.outer(np.sin(angles), r),
-                    np.broadcast_to(z, (len(angles), len(z)))], axis=-1)  # fmt: skip
+    ring = circle(space.bases[0])
+    net = ring[:, None] * r[:, None] + np.outer(z, [0.0, 0.0, 1.0])
     return Surface(space, points_of(space, net))
 
 
-def _circle_amplitude(ring: Basis, angles: Array) -> float:
-    """Amplitude of the first harmonic of the curve with coefficients ``cos(angles)``."""
+def circle(ring: Basis) -> Array:
+    """(n1, 3) control points of the unit circle: its mean radius is exact, the ripple small."""
+    turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
+    angles = turn * ring.abscissae
+    values = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
+    points = np.linalg.solve(ring.matrix(ring.abscissae), values)
     u, w = gauss(ring.degree + 4)
     t = (ring.breaks[:-1, None] + ring.sizes[:, None] * u).ravel()
-    turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
     weights = (ring.sizes[:, None] * w).ravel() * turn / np.pi
-    return float((ring.matrix(t) @ np.cos(angles)) * np.cos(turn * t) @ weights)
+    amplitude = (ring.matrix(t) @ points[:, 0]) * np.cos(turn * t) @ weights
+    return np.asarray(points / amplitude)
+
+
+def square(ring: Basis) -> Array:
+    """(n1, 3) control points of the square with corners (+-1, +-1), for a ring with joints on the
+    diagonals; ``xi1`` is the azimuth at the abscissae."""
+    angles = 2.0 * np.pi * ring.abscissae / (ring.breaks[-1] - ring.breaks[0])
+    ray = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
+    values = ray / np.abs(ray).max(axis=1, keepdims=True)
+    return np.linalg.solve(ring.matrix(ring.abscissae), values)

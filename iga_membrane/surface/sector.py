@@ -1,12 +1,19 @@
-"""Sectors of a closed ring patch: mirror images share unknowns, one sector is integrated."""
+"""Sectors of a whole patch: mirror images share unknowns, one sector is integrated.
+
+A ring patch has its azimuth ``xi1`` counted from the x axis. A square patch has ``xi1`` along y and
+``xi2`` along x, the origin at its middle.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 
-from ..arrays import Index
-from ..errors import SceneError
-from ..splines import Space
+from ..arrays import Array, Index
+from ..errors import GeometryError, SceneError
+from ..splines import Space, Table
 from .supports import Sector
 from .surface import Surface
 
@@ -14,10 +21,28 @@ from .surface import Surface
 FOLDS = {"full": (), "half": (0.0,), "quarter": (0.0, 0.5), "eighth": (0.0, 0.5, 0.25)}
 
 
-def sector_elements(space: Space, sector: Sector) -> Index:
-    """Numbers of the elements in one sector."""
-    ring, meridian = space.bases
-    return np.arange(ring.elements // sector.copies * meridian.elements)
+def sector_table(space: Space, sector: Sector, points: tuple[int, int]) -> Table:
+    """Functions at the Gauss points of one sector; elements astride a mirror plane have half the
+    weight."""
+    one, two = space.bases
+    if one.periodic:
+        return space.table(points, np.arange(one.elements // sector.copies * two.elements))
+    share = np.ones((one.elements, two.elements))
+    if sector.model != "full":
+        share *= _upper_half(one.elements)[:, None]
+    if sector.model in ("quarter", "eighth"):
+        share *= _upper_half(two.elements)
+    if sector.model == "eighth":
+        share *= np.tri(one.elements) - 0.5 * np.eye(one.elements)
+    elements = np.flatnonzero(share)
+    table = space.table(points, elements)
+    return replace(table, weights=table.weights * share.ravel()[elements, None])
+
+
+def _upper_half(elements: int) -> Array:
+    """Which elements of a line lie above its middle; one astride it counts half."""
+    ahead = np.arange(elements) - 0.5 * (elements - 1)
+    return np.asarray(0.5 * (1.0 + np.sign(ahead)))
 
 
 def check_symmetric(surface: Surface, sector: Sector) -> None:
@@ -29,13 +54,17 @@ def check_symmetric(surface: Surface, sector: Sector) -> None:
         With the largest distance of a control point from the mirror image it should be.
     """
     net = surface.net
-    around = np.arange(len(net))
+    rim, next_rim = net[:, 0, :2], np.roll(net[:, 0, :2], -1, axis=0)
+    clockwise = (
+        surface.space.bases[0].periodic
+        and float((rim[:, 0] * next_rim[:, 1] - rim[:, 1] * next_rim[:, 0]).sum()) < 0
+    )
     for fold in FOLDS[sector.model]:
-        turn = 2.0 * np.pi * fold
+        turn = 2.0 * np.pi * (-fold if clockwise else fold)
         mirror = np.array(
             [[np.cos(turn), np.sin(turn), 0.0], [np.sin(turn), -np.cos(turn), 0.0], [0.0, 0.0, 1.0]]
         )
-        off = float(np.abs(net[_image(surface.space, fold, around)] - net @ mirror).max())
+        off = float(np.abs(_image(surface.space, net, fold) - net @ mirror).max())
         if off > 1e-8 * surface.size:
             raise SceneError(
                 f'start: not symmetric as the "{sector.model}" model needs (off by {off:g}); '
@@ -43,11 +72,19 @@ def check_symmetric(surface: Surface, sector: Sector) -> None:
             )
 
 
-def _image(space: Space, fold: float, around: Index) -> Index:
-    """Mirror images of functions of the ring: abscissae add up to the fold."""
-    ring, n1 = space.bases[0], len(around)
-    first = ring.abscissae[0] / (ring.breaks[-1] - ring.breaks[0]) * n1
-    return (round(fold * n1 - 2 * first) - around) % n1
+def _image(space: Space, net: Any, fold: float) -> Any:
+    """The entries of a net (n1, n2, ...) at the mirror images of its places."""
+    ring = space.bases[0]
+    if not ring.periodic:
+        return {0.0: net[::-1], 0.5: net[:, ::-1], 0.25: np.swapaxes(net, 0, 1)}[fold]
+    length = ring.breaks[-1] - ring.breaks[0]
+    # abscissae of images add up to the fold
+    wanted = fold * length - ring.abscissae
+    off = np.abs((ring.abscissae - wanted[:, None] + 0.5 * length) % length - 0.5 * length)
+    image = off.argmin(axis=1)
+    if off[np.arange(len(image)), image].max() > 1e-9 * length:
+        raise GeometryError("the ring's elements are not symmetric in the model's mirror planes")
+    return net[image]
 
 
 def sector_images(space: Space, sector: Sector) -> Index:
@@ -56,25 +93,29 @@ def sector_images(space: Space, sector: Sector) -> Index:
     Raises
     ------
     SceneError
-        If the space is not a closed ring of whole sectors.
+        If the space is neither a closed ring of whole sectors nor a square.
     """
-    ring, _ = space.bases
-    if not ring.periodic or ring.elements % sector.copies:
+    ring, other = space.bases
+    if ring.periodic and ring.elements % sector.copies:
         raise SceneError(
-            f'model = "{sector.model}" needs a closed ring of elements that {sector.copies} '
-            f"divides (got {ring.elements})"
+            f'model = "{sector.model}" needs a ring of elements that {sector.copies} divides '
+            f"(got {ring.elements})"
         )
-    n1 = ring.count
-    around = np.arange(n1)
-    owner = around.copy()
-    for fold in FOLDS[sector.model]:
-        image = _image(space, fold, around)
-        for _ in range(sector.copies):
+    if not ring.periodic and sector.model == "eighth" and ring.elements != other.elements:
+        raise SceneError('model = "eighth" needs as many elements in both directions')
+    n1, n2 = space.net_shape
+    net = np.arange(n1 * n2).reshape(n1, n2)
+    images = [_image(space, net, fold).ravel() for fold in FOLDS[sector.model]]
+    owner = net.ravel()
+    for _ in range(sector.copies):
+        for image in images:
             owner = np.minimum(owner, owner[image])
-            owner = owner[owner]
-    rings = space.net_shape[1] - space.joined_rings
+    if space.pole is None:
+        return owner
+    rings = n2 - space.joined_rings
+    i, j = np.divmod(owner.reshape(n1, n2)[:, :rings].ravel(), n2)
     result = np.arange(space.count)
-    result[: n1 * rings] = (owner[:, None] * rings + np.arange(rings)).ravel()
+    result[: n1 * rings] = i * rings + j
     if space.pole == 1 and sector.model != "full":
         # corners of the pole at 0, 120 and 240 degrees: y -> -y swaps the last two; with
         # x -> -x as well the tangent plane cannot tilt and all three are one

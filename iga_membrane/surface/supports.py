@@ -75,10 +75,10 @@ class Joint:
 
 @dataclass(frozen=True)
 class Sector:
-    """The part of a closed ring patch that is computed; the rest are mirror images of it.
+    """The part of a ring or square patch that is computed; the rest are mirror images of it.
 
     "half": mirror plane y = 0; "quarter": x = 0 too; "eighth": x = y too. Every control point of
-    the whole ring is kept, so all models share one spline space and give the same numbers.
+    the whole patch is kept, so all models share one spline space and give the same numbers.
 
     Attributes
     ----------
@@ -94,6 +94,11 @@ class Sector:
     def copies(self) -> int:
         """How many sectors make the whole."""
         return {"full": 1, "half": 2, "quarter": 4, "eighth": 8}[self.model]
+
+    @property
+    def mirrored(self) -> str:
+        """Axes along which nothing can move as a whole."""
+        return {"full": "", "half": "y"}.get(self.model, "xy")
 
 
 Support = Fixed | Sliding | Symmetry | Joint | Sector

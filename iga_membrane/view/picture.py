@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import OutputError
 from ..solids import Sphere
-from ..solver.measures import contact_line
+from ..solver.contact_line import contact_line
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -33,6 +33,8 @@ def plot(
     color: Color = "mean_curvature",
     size: tuple[int, int] = (1200, 900),
     resolution: int = 129,
+    traction: bool = False,
+    view: tuple[float, float, float] = (1.0, -2.2, 0.55),
 ) -> Any:
     """Draw a solution.
 
@@ -42,6 +44,8 @@ def plot(
     color : "mean_curvature" (exact, from the spline), "pressure" or "none".
     size : of the picture in pixels.
     resolution : points along each direction of the patch.
+    traction : whether to draw the pull of the membrane on the solid along the contact line.
+    view : direction from the middle of the picture to the eye, in the scene's frame.
 
     Raises
     ------
@@ -62,24 +66,37 @@ def plot(
         bar = {"title": name, "color": "black", "fmt": "%.3g", "vertical": True,
                "position_x": 0.88, "position_y": 0.3, "height": 0.4}  # fmt: skip
         options = {"scalars": name, "cmap": "viridis", "clim": (low, high), "scalar_bar_args": bar}
-    plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, **options)
+    # arrows tangent to the membrane show through it
+    opacity = 0.7 if traction else 1.0
+    plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
     _substrate(plotter, pv, solution)
     if solution.scene.substrate is not None:
         line = contact_line(solution.surface.moved(_local(solution)))
         world = solution.scene.units.to_world(line.position)
         curve = pv.lines_from_points(np.vstack([world, world[:1]]))
         plotter.add_mesh(curve.tube(radius=0.008 * length), color="#cc0000")
+        if traction:
+            _arrows(plotter, pv, world, -line.conormal @ solution.scene.units.axes.T, length)
     up = solution.scene.units.axes
     middle = np.array(mesh.center)
-    view = up @ np.array([1.0, -2.2, 0.55])
+    eye = up @ np.array(view)
     reach = 1.6 * mesh.length
-    plotter.camera_position = [middle + reach * view / np.linalg.norm(view), middle, up[:, 2]]
+    plotter.camera_position = [middle + reach * eye / np.linalg.norm(eye), middle, up[:, 2]]
     plotter.enable_anti_aliasing("ssaa")
     if path is None:
         return plotter.show()
     plotter.screenshot(str(path))
     plotter.close()
     return None
+
+
+def _arrows(plotter: Any, pv: Any, points: Any, directions: Any, length: float) -> None:
+    """Some forty arrows of the pull on the solid along a line."""
+    some = slice(None, None, max(1, len(points) // 40))
+    cloud = pv.PolyData(points[some])
+    cloud["pull"] = directions[some]
+    arrows = cloud.glyph(orient="pull", scale=False, factor=0.5 * length)
+    plotter.add_mesh(arrows, color="#1155cc")
 
 
 def check_drawing() -> None:

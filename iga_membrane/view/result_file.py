@@ -43,7 +43,7 @@ def result(solution: Solution) -> dict[str, Any]:
             "touches_base": False,
             "hold_force": list(solution.hold_force),
         },
-        "forces": [_forces(solution.forces)] if solution.forces else [],
+        "forces": [_forces(found) for found in solution.forces],
         "audit": vars(verdict) if verdict else None,
         "history": [vars(step) | {"status": step.status and step.status.name}
                     for step in solution.load_steps],
@@ -81,19 +81,19 @@ def write_state(solution: Solution, path: str) -> None:
 
 
 def _forces(found: ParticleForces) -> dict[str, Any]:
-    """Force vectors of a particle with a level contact line."""
+    """Force vectors of a particle; normal and tangential to the level rim or substrate."""
     parts = {
         "F_G": found.weight,
-        "F_CL": found.line,
+        "F_CL": found.contact_line,
         "F_H": found.hydrostatic,
         "F_B": found.buoyancy,
         "F_e": found.effective,
+        "torque": found.torque,
     }
-    vectors: dict[str, Any] = {name: [0.0, 0.0, value] for name, value in parts.items()}
+    vectors: dict[str, Any] = {name: value.tolist() for name, value in parts.items()}
     return vectors | {
-        "torque": [0.0, 0.0, 0.0],
-        "normal": found.effective,
-        "tangential": 0.0,
+        "normal": float(found.effective[2]),
+        "tangential": float(np.hypot(*found.effective[:2])),
         "lifts": found.lifts,
         "paper": dict(found.paper),
     }

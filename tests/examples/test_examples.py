@@ -4,6 +4,7 @@ import importlib.util
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -37,6 +38,17 @@ def test_film_limit():
 
 
 def test_sheet_and_particle():
-    rows = load("sheet_and_particle").main(angles=(150.0, 120.0, 30.0))
-    assert [row["lifts"] for row in rows] == [False, True, True]
-    assert rows[0]["line"] < rows[1]["line"] < rows[2]["line"]
+    solutions = load("sheet_and_particle").main(angles=(150.0, 120.0, 30.0))
+    assert all(s.success for s in solutions)
+    lines = [s.measures["F_CL"] for s in solutions]
+    assert lines == sorted(lines)
+    assert lines[0] > 0
+
+
+def test_figure11():
+    example = load("figure11")
+    curves = example.main(angles=(30.0, 90.0, 170.0), bonds=(0.1, 1.0))
+    assert all(np.all(np.diff(curve["F_e"]) < 0) for curve in curves.values())
+    assert example.critical_angle(0.1) == pytest.approx(144.05640220715, abs=1e-5)
+    assert example.critical_angle(1.0, name="F_e_down") is None
+    assert example.largest_bond(0.5) == pytest.approx(1.17, rel=2e-2)

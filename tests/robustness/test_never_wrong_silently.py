@@ -8,7 +8,7 @@ import iga_membrane as iga
 from iga_membrane.reference import drop_on_plane
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.solver.audit import Audit, audit
-from iga_membrane.solver.solve import TOLERANCE, _defect
+from iga_membrane.solver.conclude import TOLERANCE, _defect
 from iga_membrane.splines import points_of
 
 TENSION = iga.SurfaceTension(1.0)

@@ -1,0 +1,1 @@
+"""Questions asked of solutions: at which value of a parameter something happens."""

@@ -1,0 +1,272 @@
+"""From an iterated state to a solution: measured, judged on independent evidence, recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from time import process_time
+
+import numpy as np
+
+from ..arrays import Array
+from ..scenes.scene import Scene
+from ..solids import Sphere
+from ..surface.surface import Surface
+from ..terms import Centroid, LineTerm, PlaneContactLine, SphereContactLine
+from .assembly import Assembly
+from .audit import Audit, audit
+from .contact_line import contact_line, vertical_forces
+from .forces import particle_forces, pull_on_sphere
+from .linear import SingularMatrix
+from .load_stepping import Bracket, LoadStep
+from .measures import measures, sphere_of, volume
+from .newton import NewtonResult
+from .options import SolverOptions
+from .solution import Solution
+from .stability import Stability, stability_of
+from .status import Status
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """What the audit lets pass; beyond, the status is not a success.
+
+    Attributes
+    ----------
+    residual : weak form on doubled quadrature.
+    volume : relative error of the volume.
+    force : vertical balance of the drop.
+    line : the same from the spline's own contact angle.
+    angle : error of the mean cosine of the contact angle.
+    penetration : depth below a plane over the scene's length.
+    indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
+    """
+
+    residual: float = 1e-3
+    volume: float = 1e-4
+    force: float = 1e-3
+    line: float = 2e-2
+    angle: float = 2e-2
+    penetration: float = 1e-6
+    indentation: float = 1e-2
+
+
+TOLERANCE = Tolerance()
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the iteration reached: ``scene`` is not the one asked for if a path stopped early."""
+
+    scene: Scene
+    result: NewtonResult
+    steps: list[LoadStep]
+    bracket: Bracket | None = None
+
+
+def conclude(
+    outcome: Outcome, assembly: Assembly, options: SolverOptions, started: float
+) -> Solution:
+    """Measure, judge and record a state."""
+    scene, result = outcome.scene, outcome.result
+    surface, multipliers = result.surface, result.multipliers
+    verdict, checked = None, None
+    status, message = result.status, result.message
+    if status is None:
+        try:
+            verdict = stability_of(assembly, surface, multipliers)
+        except (SingularMatrix, np.linalg.LinAlgError) as error:
+            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
+    if status is None and options.audit:
+        motion = assembly.spines.on(surface)
+        body = assembly.density(multipliers)
+        load = assembly.line_load(multipliers)
+        checked = audit(scene, surface, motion, body, load, assembly.points)
+    hold = _hold_force(scene, assembly, surface, multipliers)
+    if status is None:
+        assert verdict is not None
+        inside = volume(assembly, surface)
+        status, message = _judge(scene, verdict, checked, inside)
+    kind = None
+    if verdict is None and status is not Status.INTERRUPTED and _reaches_boundary(scene, surface):
+        status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
+        message = "the contact line reaches the rim: no sheet is left between them"
+    scale = scene.units
+    found = measures(scene, assembly, surface, multipliers)
+    total = process_time() - started - assembly.compile_seconds
+    return Solution(
+        scene=scene,
+        status=status,
+        message=message,
+        kind=kind,
+        surface=surface.moved(scale.to_world(surface.points)),
+        measures=found,
+        forces=particle_forces(scene, assembly, surface, multipliers, found),
+        multipliers=_named(assembly, multipliers, scale.pressure, scale.length),
+        body=assembly.density(multipliers),
+        index=verdict.index if verdict else None,
+        lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
+        audit=checked,
+        hold_force=hold,
+        contact=_contact(scene, assembly, result, found, checked),
+        unknowns=assembly.size,
+        iterations=tuple(result.iterations),
+        load_steps=tuple(outcome.steps),
+        bracket=outcome.bracket,
+        cpu_seconds={
+            "compile": assembly.compile_seconds,
+            "assembly": assembly.seconds,
+            "linear": result.linear_seconds,
+            "contact": 0.0,
+            "solve": total,
+        },
+        warnings=_warnings(scene),
+    )
+
+
+NARROW = 0.02, 0.05
+"""Width of a sheet over its rim's size, and gap between rim and particle over its radius, that
+leave no room for a sheet."""
+
+
+def _reaches_boundary(scene: Scene, surface: Surface) -> bool:
+    """Whether a sheet's contact line has come to its rim."""
+    solid = sphere_of(scene)
+    if scene.kind != "liquid_sheet" or solid is None:
+        return False
+    inner, rim = surface.net[:, 0], surface.net[:, -1]
+    width = float(np.linalg.norm(rim - inner, axis=1).min())
+    size = float(np.ptp(rim, axis=0).max())
+    between = float(solid.gap(contact_line(surface, "xi2=1").position).min())
+    return width <= NARROW[0] * size or between <= NARROW[1] * solid.radius
+
+
+def _hold_force(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> tuple[float, float, float]:
+    """World vector of the force with which the centroid constraints act on the liquid."""
+    local = np.zeros(3)
+    inside = volume(assembly, surface)
+    for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
+        if isinstance(term, Centroid):
+            local["xyz".index(term.axis)] = multiplier * inside
+    x, y, z = (float(f) for f in scene.units.axes @ local * scene.units.force)
+    return x, y, z
+
+
+def _unheld(scene: Scene) -> str:
+    """Axes along which nothing but the computation holds the membrane."""
+    return "".join(axis for axis in scene.loose_axes if axis not in scene.hold)
+
+
+def _judge(
+    scene: Scene, verdict: Stability, checked: Audit | None, inside: float
+) -> tuple[Status, str]:
+    """Status of a converged state."""
+    slipping = {a: f for a, f in scene.lateral_load.items() if a in _unheld(scene)}
+    if slipping:
+        pull = float(np.linalg.norm(list(slipping.values())))
+        force = pull * inside * scene.units.force
+        return Status.NO_EQUILIBRIUM, (
+            f"nothing balances a tangential force of {force:.6g}: a smooth plane holds no droplet "
+            'against it; hold the centroid (droplet.hold = "xy") or level the plane'
+        )
+    if checked is not None:
+        found = _defect(checked, isinstance(scene.substrate, Sphere))
+        if found is not None:
+            return found
+    if verdict.index > 0 and verdict.smallest < 0:
+        return Status.CONVERGED_SADDLE, (
+            f"equilibrium, but unstable: {verdict.index} motion(s) lower the energy (eigenvalue "
+            f"{verdict.smallest:.3g}); disturb the start to leave it"
+        )
+    pinned = {t.axis for t in scene.terms if isinstance(t, Centroid)}
+    neutral = [axis for axis in scene.loose_axes if axis not in pinned]
+    if neutral:
+        return Status.CONVERGED_MARGINAL, (
+            f"equilibrium, but free to slide along {', '.join(neutral)}; add a Centroid there or "
+            "take a symmetric model"
+        )
+    if verdict.marginal or verdict.index > 0:
+        return Status.CONVERGED_MARGINAL, (
+            f"equilibrium, but the smallest eigenvalue {verdict.smallest:.1e} is below its own "
+            f"error {verdict.error:.1e}"
+        )
+    if checked is None:
+        return Status.UNVERIFIED, "converged and stable; the audit was switched off"
+    return Status.CONVERGED_STABLE, "converged, audited and stable"
+
+
+def _defect(checked: Audit, curved: bool) -> tuple[Status, str] | None:
+    """The audit's objection, or None."""
+    limit = TOLERANCE
+    if not checked.penetration <= (limit.indentation if curved else limit.penetration):
+        return Status.PENETRATION, (
+            f"the membrane lies up to {checked.penetration:.1e} "
+            f"{'radii inside' if curved else 'lengths below'} the substrate"
+        )
+    for what, value, most in (
+        ("residual on doubled quadrature", checked.residual, limit.residual),
+        ("volume error", checked.volume, limit.volume),
+        ("vertical force balance", checked.force, limit.force),
+        ("force balance at the contact line", checked.line, limit.line),
+        ("error of the contact angle's cosine", abs(checked.angle), limit.angle),
+    ):
+        if not value <= most:
+            return Status.UNDERRESOLVED, (
+                f"the audit's {what} is {value:.1e} (allowed {most:.0e}): take more "
+                "discretization.elements or a higher degree"
+            )
+    return None
+
+
+def _contact(
+    scene: Scene,
+    assembly: Assembly,
+    result: NewtonResult,
+    found: Mapping[str, float],
+    checked: Audit | None,
+) -> dict[str, float | None]:
+    """Contact with the substrate, by the names of the result file."""
+    surface, scale = result.surface, scene.units
+    line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
+    if line is None:
+        return {}
+    unit = scale.length
+    if isinstance(line, PlaneContactLine):
+        body = assembly.density(result.multipliers)
+        at = contact_line(surface, line.edge)
+        forces = vertical_forces(at, body, line.gamma, line.contact_angle)
+        support = forces.push - forces.line
+    else:
+        support = -float(pull_on_sphere(assembly, surface, result.multipliers).total[2])
+    if isinstance(line, SphereContactLine):
+        unit *= line.sphere.radius
+    rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))
+    return {
+        "wet_solids": 1,
+        "wet_area": found["A_wet"],
+        "wet_fraction": found["A_wet"] / (np.pi * rim**2),
+        "max_penetration": checked.penetration * unit if checked else None,
+        "support_force": support * scale.force,
+    }
+
+
+def _named(
+    assembly: Assembly, multipliers: Array, pressure: float, length: float
+) -> dict[str, float]:
+    return {
+        term.name: float(m) * pressure / (length if isinstance(term, Centroid) else 1.0)
+        for term, m in zip(assembly.constraints, multipliers, strict=False)
+    }
+
+
+def _warnings(scene: Scene) -> tuple[str, ...]:
+    pinned = [t.axis for t in scene.terms if isinstance(t, Centroid) and t.axis not in scene.hold]
+    texts = list(scene.warnings)
+    if pinned:
+        texts.append(
+            f"neutral rigid translations along {', '.join(pinned)} are pinned by holding the "
+            "centroid"
+        )
+    return tuple(texts)

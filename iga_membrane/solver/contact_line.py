@@ -1,0 +1,100 @@
+"""Geometry of a contact line and the forces that follow from the line alone (paper eqs 33-34)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..solids import Sphere
+from ..splines.quadrature import gauss
+from ..splines.space import EDGES
+from ..surface.surface import Surface
+from ..terms import BodyDensity
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLine:
+    """Geometry along a contact line, at quadrature points of the whole line.
+
+    Attributes
+    ----------
+    position, tangent, conormal : (k, 3); unit tangent ``a_c`` along the edge's parameter, unit
+        conormal tangent to the membrane and out of it.
+    angle : (k,) between membrane and solid through the liquid, radians.
+    arc : (k,) quadrature weights of arc length.
+    """
+
+    position: Array
+    tangent: Array
+    conormal: Array
+    angle: Array
+    arc: Array
+
+
+def contact_line(
+    surface: Surface,
+    edge: str = "xi2=0",
+    points: int | None = None,
+    solid: Sphere | None = None,
+) -> ContactLine:
+    """Line geometry from exact spline tangents (paper eqs 33-34).
+
+    Parameters
+    ----------
+    solid : what the edge lies on; None is the plane z = 0.
+    """
+    space = surface.space
+    along, end = EDGES[edge]
+    basis = space.bases[along]
+    u, w = gauss(points or space.degree + 1)
+    t = (basis.breaks[:-1, None] + basis.sizes[:, None] * u).ravel()
+    xi = np.empty((len(t), 2))
+    xi[:, along] = t
+    xi[:, 1 - along] = space.bases[1 - along].breaks[-end]
+    k = surface.at(xi, 1)
+    speed = np.linalg.norm(k.tangents[:, along], axis=1)
+    tangent = k.tangents[:, along] / speed[:, None]
+    conormal = np.cross(tangent, k.normal)
+    # out of the membrane: against the other tangent at its start, along it at its end
+    across = np.einsum("ki,ki->k", conormal, k.tangents[:, 1 - along])
+    conormal = np.where(((across > 0) == (end == 0))[:, None], -conormal, conormal)
+    up = np.array([[0.0, 0.0, 1.0]]) if solid is None else solid.normal(k.position)
+    # atan2 keeps its digits where the membrane is nearly tangent to the solid
+    tilt = np.linalg.norm(np.cross(k.normal, up), axis=1)
+    angle = np.arctan2(tilt, np.einsum("ki,ki->k", k.normal, np.broadcast_to(up, k.normal.shape)))
+    weights = speed * (basis.sizes[:, None] * w).ravel()
+    return ContactLine(k.position, tangent, conormal, angle, weights)
+
+
+@dataclass(frozen=True)
+class VerticalForces:
+    """What acts on the wetted part of the plane z = 0, positive downwards (dimensionless).
+
+    Attributes
+    ----------
+    wet_area : inside the line.
+    push : of the pressure on it.
+    line : pull of the membrane upwards with Young's angle; measured : with the spline's tangents.
+    """
+
+    wet_area: float
+    push: float
+    line: float
+    measured: float
+
+
+def vertical_forces(
+    line: ContactLine, body: BodyDensity, tension: float, contact_angle: float
+) -> VerticalForces:
+    """Forces on the wetted plane from the line alone, by Green's theorem (counterclockwise)."""
+    x, y = line.position[:, 0], line.position[:, 1]
+    nx, ny = line.tangent[:, 1] * line.arc, -line.tangent[:, 0] * line.arc
+    wet = float(0.5 * (x @ nx + y @ ny))
+    mx, my = float(0.5 * (x * x) @ nx), float(0.5 * (y * y) @ ny)
+    gx, gy, _ = body.gradient
+    push = -(body.constant * wet + gx * mx + gy * my)
+    young = tension * np.sin(np.radians(contact_angle)) * float(line.arc.sum())
+    measured = -tension * float(line.conormal[:, 2] @ line.arc)
+    return VerticalForces(wet, push, young, measured)

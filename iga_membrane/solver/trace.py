@@ -1,0 +1,116 @@
+"""Continuation: equilibria along a path of scenes, each started from the one before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from time import process_time
+from typing import Literal
+
+from ..checks import number
+from ..errors import SceneError, SolveError
+from ..scenes.scene import Ramp, Scene
+from .assembly import Assembly
+from .conclude import Outcome, conclude
+from .load_stepping import Bracket, LoadStep, load_stepping
+from .newton import NewtonOptions, NewtonResult
+from .options import SolverOptions
+from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Equilibria along a parameter.
+
+    Attributes
+    ----------
+    parameter : its name; values : those reached, of the ones asked for.
+    solutions : one at each of them.
+    end : how the path ended: the last solution, or where it stopped short, the last good state
+        with the status that says why.
+    """
+
+    parameter: str
+    values: Sequence[float]
+    solutions: Sequence[Solution]
+    end: Solution
+
+    @property
+    def success(self) -> bool:
+        """Whether every value was reached and every solution is a success."""
+        return self.end.success and all(s.success for s in self.solutions)
+
+    @property
+    def bracket(self) -> Bracket | None:
+        """Of the limit point at which the path ended, if it did."""
+        return self.end.bracket
+
+
+def trace(
+    scene_at: Callable[[float], Scene],
+    values: Sequence[float],
+    *,
+    parameter: str = "parameter",
+    options: SolverOptions | None = None,
+    on_fail: Literal["raise", "return"] = "raise",
+    report: Callable[[float], None] = lambda load: None,
+) -> Path:
+    """Follow an equilibrium along a parameter by load stepping; limit points are bracketed.
+
+    Parameters
+    ----------
+    scene_at : value of the parameter to a scene; all have the same space and supports.
+    values : two or more; the first is solved from its own start.
+    parameter : its name in messages and brackets.
+    on_fail : "raise" a :class:`SolveError` with the last good state if the path stops short, or
+        "return" the path as far as it came.
+    report : called with the part of the path reached.
+
+    Raises
+    ------
+    SceneError
+        Fewer than two values.
+    SolveError
+    """
+    if len(values) < 2:
+        raise SceneError(f"values = {list(values)}: a path needs two or more")
+    checked = tuple(number(f"values[{i}]", v) for i, v in enumerate(values))
+    ramp = Ramp(parameter, checked, scene_at, asked=True)
+    found = walk(ramp, options or SolverOptions(), report)
+    reached = [s for s in found if s.success]
+    path = Path(parameter, checked[: len(reached)], reached, found[-1])
+    if not path.success and on_fail == "raise":
+        raise SolveError(f"{path.end.status.name}: {path.end.message}", path.end)
+    return path
+
+
+def walk(
+    ramp: Ramp, options: SolverOptions, report: Callable[[float], None] = lambda load: None
+) -> list[Solution]:
+    """Solutions at the ramp's values; the last one says how the walk ended."""
+    started = process_time()
+    assembly = Assembly(ramp(0.0), options.quadrature)
+    settings = NewtonOptions(
+        options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
+    )
+    found: list[Solution] = []
+
+    def reached(scene: Scene, state: NewtonResult) -> None:
+        assembly.load(scene)
+        found.append(conclude(Outcome(scene, state, []), assembly, options, started))
+
+    path = load_stepping(ramp, assembly, settings, options.min_load_step, report, reached)
+    history = [_with_measures(step, ramp, found) for step in path.steps]
+    if path.result.status is not None:
+        assembly.load(path.scene)
+        outcome = Outcome(path.scene, path.result, history, path.bracket)
+        return [*found, conclude(outcome, assembly, options, started)]
+    return [*found[:-1], replace(found[-1], load_steps=tuple(history))]
+
+
+def _with_measures(step: LoadStep, ramp: Ramp, found: Sequence[Solution]) -> LoadStep:
+    """A load step at one of the ramp's values with what was measured there."""
+    for load, solution in zip(ramp.stops, found, strict=False):
+        if step.load == load and step.status is None:
+            return replace(step, measures=dict(solution.measures))
+    return step
