@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, line_angle, number, vector
+from ..checks import choice, number, vector
 from ..errors import SceneError
-from ..solids import Plane, Sphere
+from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading
 from ..surface.ring import axisymmetric, drop_space
-from ..surface.supports import Sector, Sliding
+from ..surface.supports import Sector, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
     Centroid,
+    Contact,
     Gravity,
     LineTerm,
     PlaneContactLine,
@@ -27,6 +28,7 @@ from ..terms import (
     Term,
     Volume,
 )
+from .asperities import smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import Ramp, Scene
 from .start import Pancake, drop_on_sphere, least_energy_pancake
@@ -35,40 +37,49 @@ HOLDS = ("none", "x", "xy", "xyz")
 
 
 def sessile_droplet(
-    substrate: Plane | Sphere,
+    substrate: Plane | Sphere | SphereLattice | Spheres,
     *,
     volume: float,
     liquid: Liquid | None = None,
     gravity: float | Sequence[float] = 0.0,
     discretization: Discretization | None = None,
     hold: str = "none",
-    start: Surface | None = None,
+    start: Surface | str | None = None,
+    penalty: float | None = None,
+    penetration_tolerance: float = 1e-2,
 ) -> Scene:
-    """Droplet of a volume on a plane or on top of a sphere.
+    """Droplet of a volume on a plane, on top of a sphere, or on asperities.
+
+    Below 180 degrees it has a contact line; at 180 its foot is a contact area and the whole skin is
+    one closed membrane. On asperities only 180 degrees are available yet.
 
     Parameters
     ----------
-    substrate : the plane or sphere with its contact angle.
+    substrate : the solid with its contact angle.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
     discretization : space, degree, elements, model.
     hold : "none", or the axes (of the plane's frame) along which a uniform body force holds the
         centroid: "x", "xy", "xyz".
-    start : a surface of the same space to start from, in world coordinates.
+    start : a surface of the same space to start from, in world coordinates; at 180 degrees also
+        "flat", the drop on a plane through the tops, "touching" or "above", a sphere.
+    penalty : None for exact contact, else the paper's penalty (eq. 24): traction over depth in
+        units of tension over squared length, length that of a ball of the volume.
+    penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
+        that exact contact leaves at most and beyond which a state is no success.
 
     Raises
     ------
     SceneError
-        A value out of its range; 180 degrees (not available yet); a model with a mirror plane that
-        gravity does not have; a start below the substrate.
+        A value out of its range; a contact angle below 180 degrees on asperities (not available
+        yet); a model with a mirror plane that gravity or the substrate does not have; a start below
+        the substrate.
     """
     liquid = liquid or Liquid()
-    mesh = (discretization or Discretization()).mesh()
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     acceleration = _acceleration(gravity)
-    line_angle("substrate.contact_angle", substrate.contact_angle)
     origin, axes = _frame(substrate)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
@@ -80,20 +91,22 @@ def sessile_droplet(
             f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "
             "length leaves the range of floating point numbers; choose other units"
         )
-    sector = _sector(mesh, bond)
-    foot = _foot(substrate, liquid, length, max(0.0, -float(bond[2])))
-    grading = _grading(substrate.contact_angle, abs(float(bond[2])), foot.pancake.length)
-    if start is None:
-        start = _start(foot, mesh, grading, scale)
-    else:
-        _check_start(start, mesh, substrate)
-    terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume), foot.line]
+    asked = discretization or Discretization()
+    terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)
         terms.append(Gravity(liquid.density, (gx, gy, gz)))
+    flat_foot = isinstance(substrate, (SphereLattice, Spheres)) or substrate.contact_angle == 180.0
+    law = Contact(
+        substrate,
+        None if penalty is None else penalty * liquid.surface_tension / length**2,
+        penetration_tolerance,
+    )
+    parts = _Parts(substrate, asked, scale, bond, start, liquid, law)
+    built = _on_an_area(parts) if flat_foot else _on_a_line(parts)
+    sector = built.sector
     if isinstance(substrate, Plane):
         terms += [Centroid(axis) for axis in {"full": "xy", "half": "x"}.get(sector.model, "")]
-
     pull = float(np.linalg.norm(acceleration))
 
     def at(size: float) -> Scene:
@@ -102,23 +115,110 @@ def sessile_droplet(
             volume=volume,
             liquid=liquid,
             gravity=[size / pull * g for g in acceleration],
-            discretization=Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
+            discretization=replace(asked, model=sector.model),
             hold=hold,
         )
 
+    described = _describe(substrate, volume, liquid, acceleration, hold)
     return Scene(
-        start,
-        terms,
-        (foot.support, sector),
+        built.surface,
+        [*terms, *built.terms],
+        [*built.supports, sector],
         scale=scale,
-        grading=grading,
-        ramp=Ramp("gravity.acceleration", (0.0, pull), at) if bond.any() else None,
+        grading=built.grading,
+        directions=built.directions,
+        ramp=Ramp("gravity.acceleration", (0.0, pull), at)
+        if bond.any() and not flat_foot
+        else None,
         substrate=substrate,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
-        description=_describe(substrate, volume, liquid, acceleration, mesh, sector, hold),
+        description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=_hints(substrate, bond, sector),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """What both kinds of foot are built from."""
+
+    substrate: Plane | Sphere | SphereLattice | Spheres
+    asked: Discretization
+    scale: Scale
+    bond: Array
+    start: Surface | str | None
+    liquid: Liquid
+    law: Contact
+
+    @property
+    def down(self) -> float:
+        """Bond number of gravity's part towards the substrate."""
+        return max(0.0, -float(self.bond[2]))
+
+
+@dataclass(frozen=True, eq=False)
+class _Built:
+    """Start, support and price of a foot."""
+
+    surface: Surface
+    sector: Sector
+    mesh: Mesh
+    terms: Sequence[Term]
+    supports: Sequence[Support] = ()
+    grading: Grading = field(default_factory=Grading)
+    directions: Array | None = None
+
+
+def _on_a_line(parts: _Parts) -> _Built:
+    """The liquid-gas surface alone, its edge a contact line on a plane or a sphere."""
+    substrate, mesh, scale = parts.substrate, parts.asked.mesh(), parts.scale
+    assert isinstance(substrate, (Plane, Sphere))
+    sector = _sector(mesh, parts.bond)
+    foot = _foot(substrate, parts.liquid, scale.length, parts.down)
+    bond = abs(float(parts.bond[2]))
+    grading = _grading(substrate.contact_angle, bond, foot.pancake.length)
+    if isinstance(parts.start, str):
+        raise SceneError(f'start = "{parts.start}": only at 180 degrees; leave it out here')
+    if parts.start is None:
+        start = _start(foot, mesh, grading, scale)
+    else:
+        start = parts.start
+        _check_start(start, mesh, substrate)
+    return _Built(start, sector, mesh, [foot.line], [foot.support], grading)
+
+
+def _on_an_area(parts: _Parts) -> _Built:
+    """The whole skin, lying on the solid with its foot."""
+    substrate, scale = parts.substrate, parts.scale
+    for angle in np.atleast_1d(np.asarray(substrate.contact_angle)):
+        if angle < 180.0:
+            raise SceneError(
+                f"substrate.contact_angle = {angle:g}: not available yet on asperities; 180 is"
+            )
+    if parts.asked.space != "bspline":
+        raise SceneError(
+            f'discretization.space = "{parts.asked.space}": a contact area needs "bspline"'
+        )
+    x, y, _ = (float(b) for b in parts.bond)
+    tiny = 1e-14 * float(np.abs(parts.bond).max())
+    local = scale.local_solid(substrate)
+    lateral = (x if abs(x) > tiny else 0.0, y if abs(y) > tiny else 0.0)
+    smallest = smallest_model(local, 1.5, lateral)
+    model = parts.asked.model or smallest
+    if MODELS.index(model) > MODELS.index(smallest):
+        raise SceneError(
+            f'discretization.model = "{model}": gravity or the substrate has no such mirror '
+            f'planes; "{smallest}" is the smallest model here'
+        )
+    unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
+    skin = whole_skin(
+        parts.down, unit, local.scale, mesh.degree, max(mesh.elements, 0), parts.start
+    )
+    mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
+    surface = Surface(skin.space, scale.to_world(skin.points))
+    if isinstance(parts.start, Surface):
+        surface = surface.moved(parts.start.points)
+    return _Built(surface, Sector(model), mesh, [parts.law], directions=skin.directions)
 
 
 def _acceleration(gravity: Any) -> Array:
@@ -158,10 +258,14 @@ class _Foot:
     support: Sliding
 
 
-def _frame(substrate: Plane | Sphere) -> tuple[tuple[float, float, float], Array]:
+def _frame(
+    substrate: Plane | Sphere | SphereLattice | Spheres,
+) -> tuple[tuple[float, float, float], Array]:
     """Origin and axes of the scene: on the plane, or at the top of the sphere."""
     if isinstance(substrate, Plane):
         return substrate.point, substrate.axes()
+    if not isinstance(substrate, Sphere):
+        return (0.0, 0.0, 0.0), np.eye(3)
     x, y, z = substrate.center
     return (x, y, z + substrate.radius), np.eye(3)
 
@@ -218,9 +322,11 @@ def _check_start(start: Surface, mesh: Mesh, substrate: Plane | Sphere) -> None:
         )
 
 
-def _hints(substrate: Plane | Sphere, bond: Array, sector: Sector) -> tuple[str, ...]:
+def _hints(
+    substrate: Plane | Sphere | SphereLattice | Spheres, bond: Array, sector: Sector
+) -> tuple[str, ...]:
     texts = []
-    angle = substrate.contact_angle
+    angle = float(np.min(substrate.contact_angle))
     if angle <= np.pi:
         texts.append(
             f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
@@ -236,12 +342,10 @@ def _hints(substrate: Plane | Sphere, bond: Array, sector: Sector) -> tuple[str,
 
 
 def _describe(
-    substrate: Plane | Sphere,
+    substrate: Plane | Sphere | SphereLattice | Spheres,
     volume: float,
     liquid: Liquid,
     acceleration: Array,
-    mesh: Mesh,
-    sector: Sector,
     hold: str,
 ) -> dict[str, Any]:
     """The scene by the names of the scene file."""
@@ -257,21 +361,39 @@ def _describe(
         "gravity": {"acceleration": size, "direction": [float(d) for d in direction]},
         "substrate": _describe_substrate(substrate),
         "droplet": {"hold": hold},
-        "discretization": mesh.described(sector.model),
     }
 
 
-def _describe_substrate(substrate: Plane | Sphere) -> dict[str, Any]:
-    angle = substrate.contact_angle
-    if isinstance(substrate, Sphere):
-        size: dict[str, Any] = {
-            "kind": "sphere",
-            "contact_angle": angle,
-            "radius": substrate.radius,
-        }
-        top = substrate.center == (0.0, 0.0, -substrate.radius)
-        return size if top else size | {"center": list(substrate.center)}
-    plane: dict[str, Any] = {"kind": "plane", "contact_angle": angle}
-    if substrate == Plane(angle):
-        return plane
-    return plane | {"point": list(substrate.point), "normal": list(substrate.normal)}
+def _describe_substrate(substrate: Plane | Sphere | SphereLattice | Spheres) -> dict[str, Any]:
+    match substrate:
+        case Sphere():
+            size: dict[str, Any] = {
+                "kind": "sphere",
+                "contact_angle": substrate.contact_angle,
+                "radius": substrate.radius,
+            }
+            top = substrate.center == (0.0, 0.0, -substrate.radius)
+            return size if top else size | {"center": list(substrate.center)}
+        case Plane():
+            plane: dict[str, Any] = {"kind": "plane", "contact_angle": substrate.contact_angle}
+            if substrate == Plane(substrate.contact_angle):
+                return plane
+            return plane | {"point": list(substrate.point), "normal": list(substrate.normal)}
+        case SphereLattice():
+            lattice = {
+                "kind": "sphere_lattice",
+                "contact_angle": substrate.contact_angle,
+                "radius": substrate.radius,
+                "spacing": substrate.spacing,
+                "arrangement": substrate.arrangement,
+                "offset": list(substrate.offset),
+            }
+            return lattice if substrate.base is None else lattice | {"base": substrate.base}
+        case Spheres():
+            spheres = {
+                "kind": "spheres",
+                "contact_angle": np.asarray(substrate.contact_angle).tolist(),
+                "centers": np.asarray(substrate.centers).tolist(),
+                "radii": np.asarray(substrate.radii).tolist(),
+            }
+            return spheres if substrate.base is None else spheres | {"base": substrate.base}

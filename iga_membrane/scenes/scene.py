@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Plane, Sphere
+from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading
 from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
@@ -59,6 +59,8 @@ class Scene:
     scale : units and frame of the computation; by default the surface's size and the tension.
         Sliding edges lie in z = 0 of its frame.
     grading : spread of the control points along the meridians.
+    directions : (count, 3) in which the control points move, the same at every step; if None the
+        normals of the current surface.
     ramp : the way to this scene if a direct solve fails.
     substrate : the solid that the membrane touches, for its kind, forces and pictures.
     hold : axes along which the user asked for the centroid to be held.
@@ -74,8 +76,9 @@ class Scene:
     supports: Sequence[Support] = ()
     scale: Scale | None = None
     grading: Grading = field(default_factory=Grading)
+    directions: Array | None = field(default=None, repr=False)
     ramp: Ramp | None = field(default=None, repr=False)
-    substrate: Plane | Sphere | None = None
+    substrate: Plane | Sphere | SphereLattice | Spheres | None = None
     hold: str = ""
     particle_pull: float = 0.0
     liquid_density: float = 0.0
@@ -150,8 +153,10 @@ class Scene:
 
     @property
     def meridian_grading(self) -> Grading | None:
-        """The grading of a ring patch; other patches keep their parametrization."""
-        return self.grading if self.surface.space.bases[0].periodic else None
+        """The grading of a ring patch; other patches, and membranes whose control points move in
+        given directions, keep their parametrization."""
+        regular = self.surface.space.bases[0].periodic and self.directions is None
+        return self.grading if regular else None
 
     @property
     def sector(self) -> Sector:

@@ -60,15 +60,16 @@ class Pancake:
         return angle, np.concatenate([[0.0], np.cumsum(speed * step)])
 
 
-def least_energy_pancake(contact_angle: float, bond: float, volume: float) -> Pancake:
+def least_energy_pancake(
+    contact_angle: float, bond: float, volume: float, *, steepest: float = STEEPEST
+) -> Pancake:
     """The pancake of least energy (tension 1, density times gravity ``bond``).
 
     Parameters
     ----------
-    contact_angle : degrees; limited to ``STEEPEST`` if there is gravity.
+    contact_angle : degrees; limited to ``steepest`` if there is gravity.
     """
-    steepest = STEEPEST if bond > 0 else 180.0
-    theta = np.radians(min(contact_angle, steepest))
+    theta = np.radians(min(contact_angle, steepest if bond > 0 else 180.0))
     flats = np.concatenate([[0.0], np.geomspace(1e-3, 3e3, 300)])[:, None]
     u, w = gauss(20)
     best = (np.inf, Pancake(0.0, 1.0, 1.0, theta))

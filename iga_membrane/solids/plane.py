@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..checks import contact_angle, vector
 from ..errors import SceneError
+from .nearest import Nearest
 
 
 @dataclass(frozen=True)
@@ -54,3 +55,22 @@ class Plane:
     def gap(self, points: ArrayLike) -> Array:
         """Distance above the plane of points (..., 3); positive in the gas (paper eq. 24)."""
         return np.asarray((np.asarray(points, float) - self.point) @ self.unit_normal())
+
+    def nearest(self, points: Array) -> Nearest:
+        """Gap and its derivatives; a plane has number -1."""
+        normal = np.broadcast_to(self.unit_normal(), points.shape)
+        shape = points.shape[:-1]
+        return Nearest(self.gap(points), normal, np.zeros(shape), np.full(shape, -1))
+
+    @property
+    def scale(self) -> float:
+        """Length over which contact changes: a plane has none, so that of the scene."""
+        return 1.0
+
+    def center_of(self, which: Index) -> Array:
+        """A plane has no centre: not a number."""
+        return np.full((*np.shape(which), 3), np.nan)
+
+    def radius_of(self, which: Index) -> Array:
+        """(...) infinite."""
+        return np.full(np.shape(which), np.inf)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..checks import contact_angle, number, vector
+from .nearest import Nearest, nearest_of_balls
 
 
 @dataclass(frozen=True)
@@ -63,3 +64,21 @@ class Sphere:
     def closest_point(self, points: ArrayLike) -> Array:
         """(..., 3) projection onto the surface: paper eq. (28)."""
         return np.asarray(np.array(self.center) + self.radius * self.normal(points))
+
+    def nearest(self, points: Array) -> Nearest:
+        """Gap and its derivatives; the sphere has number 0."""
+        which = np.zeros(points.shape[:-1], int)
+        return nearest_of_balls(points, np.array(self.center), np.asarray(self.radius), which)
+
+    @property
+    def scale(self) -> float:
+        """Length over which contact changes."""
+        return self.radius
+
+    def center_of(self, which: Index) -> Array:
+        """(..., 3) its centre."""
+        return np.broadcast_to(np.array(self.center), (*np.shape(which), 3))
+
+    def radius_of(self, which: Index) -> Array:
+        """(...) its radius."""
+        return np.full(np.shape(which), self.radius)

@@ -12,12 +12,13 @@ from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, Table
 from ..surface.motion import Spines
-from ..surface.sector import sector_table
+from ..surface.sector import sector_elements, sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
-from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm
+from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, Contact, LineTerm
 from ..terms import variations as vary
 from ..terms.edge_gap import EdgeGap
+from .contact import ContactSet
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
 
 
@@ -68,6 +69,8 @@ class System:
         return np.asarray(self.gradient - self.constraint_gradients @ multipliers)
 
 
+STEADY = 0.5
+"""Part of the depth that a contact gives way, as the largest step before it is made harder."""
 TINY = 1e-12
 """Force over tension below which a residual is nothing: a flat sheet has no forces at all."""
 
@@ -88,7 +91,7 @@ class Assembly:
         self.copies = sector.copies
         self._mirrored = [axis in sector.mirrored for axis in "xyz"]
         self._supports: tuple[Support, ...] = scene.local_supports()
-        self.spines = Spines(surface, self._supports)
+        self.spines = Spines(surface, self._supports, scene.directions)
         self.size = self.spines.size
         ring = space.bases[0]
         around = max(3, ring.degree) if ring.periodic and ring.smooth else ring.degree + 1
@@ -103,17 +106,31 @@ class Assembly:
         self._ring_elements = np.arange(space.bases[0].elements // sector.copies)
         self._space = space
         self._groups = self._row_groups()
+        self.contact = self._contact(scene, surface)
         self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
         self.load(scene)
+
+    def _contact(self, scene: Scene, surface: Surface) -> ContactSet | None:
+        """The scene's contact; its reference area is that of the scene's start."""
+        term = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
+        if term is None:
+            return None
+        points = (1, 1) if term.penalty is None else self.points
+        table = sector_table(surface.space, scene.sector, points)
+        area = vary.element_points(table, surface.points).area * table.weights
+        elements, _ = sector_elements(surface.space, scene.sector)
+        return ContactSet(
+            term.solid, table, area, term.penalty, term.depth, surface.space, elements
+        )
 
     def load(self, scene: Scene) -> None:
         """Take the terms of another scene of the same space, whose supports move the same edges."""
         terms, supports = scene.local_terms(), scene.local_supports()
         if supports != self._supports:
             self._supports = supports
-            self.spines = Spines(scene.local_surface(), supports)
+            self.spines = Spines(scene.local_surface(), supports, scene.directions)
         self.constraints = [t for t in terms if isinstance(t, Constraint)]
-        self._tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+        self.tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
         self._bodies = [
             t.density() for t in terms if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
         ]
@@ -152,8 +169,31 @@ class Assembly:
         points = surface.points
         at = vary.element_points(self.table, points)
         total, constraints = self._values(points, at)
+        if self.contact is not None:
+            total += self.contact.energy(self.contact.touch(points))
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
+
+    def near_contact(self, surface: Surface, displacement: Array) -> float:
+        """Largest displacement over the contact length, of control points near the solid."""
+        if self.contact is None:
+            return 0.0
+        close = self.contact.touch(surface.points).at.gap < 2.0 * self.contact.length
+        functions = self.table.functions[close.any(axis=1)]
+        moved = np.linalg.norm(displacement[functions], axis=-1)
+        return float(moved.max(initial=0.0)) / self.contact.length
+
+    def settled(self, surface: Surface, near: float) -> bool:
+        """Whether the multipliers of contact hold the gap; they are updated when the last step
+        ``near`` the solid (over the contact length) is small against what the contact still gives.
+        """
+        if self.contact is None:
+            return True
+        touch = self.contact.touch(surface.points)
+        if near * self.contact.length <= STEADY * self.contact.give(touch):
+            self.contact.tighten(touch, surface.points)
+            return self.contact.settled
+        return False
 
     def body_integral(self, surface: Surface, density: BodyDensity) -> float:
         """Integral of a density over the liquid of one sector, its part under the foot included."""
@@ -165,7 +205,7 @@ class Assembly:
         """Derivative of the Lagrangian along any displacement (count, 3) of the control points."""
         points, body = surface.points, self.density(multipliers)
         at = vary.element_points(self.table, points)
-        forces = vary.forces(self.table, at, self._tension, body)
+        forces = vary.forces(self.table, at, self.tension, body)
         total = float((forces * displacement[self.table.functions]).sum())
         for term, edge in self.lines:
             forces = term.forces(edge, points, term.strength, body)
@@ -191,7 +231,7 @@ class Assembly:
 
     def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
         area, integrals = vary.energies(self.table, at, [self.body, *self._held])
-        integrals[0] += self._tension * area
+        integrals[0] += self.tension * area
         for term, edge in self.lines:
             integrals[0] += term.energy(edge, points, term.strength, self.body)
             integrals[1:] += [term.energy(edge, points, 0.0, held) for held in self._held]
@@ -214,7 +254,7 @@ class Assembly:
         gradient, columns, scale = self._first_order(points, directions, at, multipliers)
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
-        size = max(float(np.linalg.norm(scale)), TINY * self._tension)
+        size = max(float(np.linalg.norm(scale)), TINY * self.tension)
         return System(gradient, columns, constraints, size, matrix)
 
     def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
@@ -231,12 +271,17 @@ class Assembly:
         columns = np.zeros((self.size, self.multipliers))
         for elements, rows in self._groups:
             part = at.part(elements)
-            work = _along(vary.forces(rows, part, self._tension, self.body), directions, rows)
+            work = _along(vary.forces(rows, part, self.tension, self.body), directions, rows)
             gradient += self._gather(work, rows.functions)
             scale += self._gather(np.abs(work), rows.functions)
             for k, held in enumerate(self._held):
                 work = _along(vary.forces(rows, part, 0.0, held), directions, rows)
                 columns[:, k] += self._gather(work, rows.functions)
+        if self.contact is not None:
+            push = self.contact.forces(self.contact.touch(points))
+            work = _along(push, directions, self.table)
+            gradient += self._gather(work, self.table.functions)
+            scale += self._gather(np.abs(work), self.table.functions)
         for term, edge in self.lines:
             line = self._edge_rows(edge)
             forces = _again(term.forces(edge, points, term.strength, self.body), line)
@@ -269,12 +314,16 @@ class Assembly:
             blocks = vary.hessian(
                 rows,
                 at.part(elements),
-                self._tension,
+                self.tension,
                 body,
                 directions[rows.functions],
                 self._kernels,
             )
             matrix.add(self.spines.unknowns[rows.functions], blocks)
+        if self.contact is not None:
+            near, blocks = self.contact.hessian(self.contact.touch(points), directions)
+            functions = self.table.functions[near]
+            matrix.add(self.spines.unknowns[functions], blocks)
         for term, edge in self.lines:
             self._add_edge(
                 matrix, directions, edge, term.hessian(edge, points, term.strength, body)

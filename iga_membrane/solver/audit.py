@@ -18,8 +18,9 @@ from ..surface.ring import rational_matrix
 from ..surface.sector import sector_table
 from ..surface.supports import Fixed, Sector, Symmetry
 from ..surface.surface import Surface
-from ..terms import BodyDensity, LineTerm, SurfaceTension, Term, Volume
+from ..terms import BodyDensity, LineTerm, Pressure, SurfaceTension, Term, Volume
 from .assembly import TINY
+from .contact import ContactSet
 from .contact_line import ContactLine, contact_line, vertical_forces
 from .measures import sphere_of
 
@@ -56,6 +57,7 @@ def audit(
     body: BodyDensity,
     line_load: Array,
     points: tuple[int, int],
+    contact: ContactSet | None = None,
 ) -> Audit:
     """Check a state.
 
@@ -66,6 +68,7 @@ def audit(
     body : body density of the Lagrangian, so minus the pressure.
     line_load : (count,) coefficients of the load with which a curved solid holds its edge.
     points : the solver's Gauss points in each direction.
+    contact : of a membrane that lies on a solid, with its multipliers.
     """
     space, sector = surface.space, scene.sector
     table = sector_table(space, sector, (2 * points[0], 2 * points[1]))
@@ -83,6 +86,13 @@ def audit(
     )
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     _scatter(total, absolute, motion, table.functions, force)
+    if contact is not None:
+        # tractions push along the solid's normals at the contact points
+        x = contact.table.values @ surface.points[contact.table.functions]
+        push = contact.solid.nearest(x).normal * (contact.touch(surface.points).traction
+                                                  * contact.area)[..., None]  # fmt: skip
+        pull = -contact.table.values.transpose(0, 2, 1) @ push
+        _scatter(total, absolute, motion, contact.table.functions, pull)
     lines = [t for t in terms if isinstance(t, LineTerm)]
     solid = sphere_of(scene)
     ring = np.arange(space.bases[0].elements // sector.copies)
@@ -101,6 +111,13 @@ def audit(
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
     inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
+    if contact is not None:
+        depth = _depth(surface, contact, points)
+        weight = body.gradient[2] * inside
+        carried = -sector.copies * float(push[..., 2].sum())
+        missing = abs(carried + weight) / max(abs(weight), abs(carried), TINY)
+        balanced = missing if _stands_free(scene) else 0.0
+        return Audit(residual, _missing(terms, inside), force=balanced, penetration=depth)
     if not lines:
         return Audit(residual, _missing(terms, inside))
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
@@ -130,6 +147,25 @@ def _missing(terms: tuple[Term, ...], inside: float) -> float:
     """Relative error of a prescribed volume."""
     held = next((t for t in terms if isinstance(t, Volume)), None)
     return abs(inside - held.target) / held.value if held else 0.0
+
+
+def _stands_free(scene: Scene) -> bool:
+    """Whether nothing but the solid carries the liquid's weight."""
+    return not any(isinstance(t, Pressure) for t in scene.terms) and not any(
+        isinstance(s, (Fixed, Symmetry)) for s in scene.supports
+    )
+
+
+def _depth(surface: Surface, contact: ContactSet, points: tuple[int, int]) -> float:
+    """Largest depth over the contact length, sampled four times denser than the quadrature."""
+    touch = contact.touch(surface.points)
+    near = np.flatnonzero((touch.at.gap < contact.length).any(axis=1))
+    deepest = 0.0
+    for some in np.array_split(contact.elements[near], max(1, len(near) // 500)):
+        dense = surface.space.table((4 * points[0], 4 * points[1]), some)
+        gap = contact.solid.nearest(dense.values @ surface.points[dense.functions]).gap
+        deepest = max(deepest, -float(gap.min(initial=np.inf)))
+    return deepest / contact.length
 
 
 def _under_cap(line: ContactLine, solid: Sphere) -> float:

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from time import process_time
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Sphere
+from ..solids import Plane, Sphere
 from ..surface.surface import Surface
-from ..terms import Centroid, LineTerm, PlaneContactLine, SphereContactLine
+from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_line import contact_line, vertical_forces
+from .footing import engulfed, footing
 from .forces import particle_forces, pull_on_sphere
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep
@@ -70,7 +72,7 @@ def conclude(
     """Measure, judge and record a state."""
     scene, result = outcome.scene, outcome.result
     surface, multipliers = result.surface, result.multipliers
-    verdict, checked = None, None
+    verdict, checked, kind = None, None, None
     status, message = result.status, result.message
     if status is None:
         try:
@@ -81,13 +83,16 @@ def conclude(
         motion = assembly.spines.on(surface)
         body = assembly.density(multipliers)
         load = assembly.line_load(multipliers)
-        checked = audit(scene, surface, motion, body, load, assembly.points)
+        checked = audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
     hold = _hold_force(scene, assembly, surface, multipliers)
     if status is None:
         assert verdict is not None
         inside = volume(assembly, surface)
         status, message = _judge(scene, verdict, checked, inside)
-    kind = None
+        if assembly.contact is not None:
+            objection = _contact_objection(scene, assembly, surface, multipliers)
+            if objection is not None:
+                status, kind, message = objection
     if verdict is None and status is not Status.INTERRUPTED and _reaches_boundary(scene, surface):
         status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
         message = "the contact line reaches the rim: no sheet is left between them"
@@ -172,7 +177,7 @@ def _judge(
             'against it; hold the centroid (droplet.hold = "xy") or level the plane'
         )
     if checked is not None:
-        found = _defect(checked, isinstance(scene.substrate, Sphere))
+        found = _defect(checked, _tolerated_depth(scene))
         if found is not None:
             return found
     if verdict.index > 0 and verdict.smallest < 0:
@@ -197,13 +202,23 @@ def _judge(
     return Status.CONVERGED_STABLE, "converged, audited and stable"
 
 
-def _defect(checked: Audit, curved: bool) -> tuple[Status, str] | None:
+def _tolerated_depth(scene: Scene) -> float:
+    """Depth in the solid over its contact length."""
+    law = next((t for t in scene.terms if isinstance(t, Contact)), None)
+    if law is not None:
+        return law.depth
+    curved = isinstance(scene.substrate, Sphere)
+    return TOLERANCE.indentation if curved else TOLERANCE.penetration
+
+
+def _defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
     """The audit's objection, or None."""
     limit = TOLERANCE
-    if not checked.penetration <= (limit.indentation if curved else limit.penetration):
+    if not checked.penetration <= depth:
         return Status.PENETRATION, (
-            f"the membrane lies up to {checked.penetration:.1e} "
-            f"{'radii inside' if curved else 'lengths below'} the substrate"
+            f"the membrane lies up to {checked.penetration:.1e} radii (plane: lengths) inside the "
+            f"substrate, {depth:.0e} is allowed: take more discretization.elements or raise "
+            "solver.penetration_tolerance"
         )
     for what, value, most in (
         ("residual on doubled quadrature", checked.residual, limit.residual),
@@ -226,9 +241,11 @@ def _contact(
     result: NewtonResult,
     found: Mapping[str, float],
     checked: Audit | None,
-) -> dict[str, float | None]:
+) -> dict[str, Any]:
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
+    if assembly.contact is not None:
+        return _footing(scene, assembly, result, found, checked)
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if line is None:
         return {}
@@ -250,6 +267,69 @@ def _contact(
         "max_penetration": checked.penetration * unit if checked else None,
         "support_force": support * scale.force,
     }
+
+
+def _footing(
+    scene: Scene,
+    assembly: Assembly,
+    result: NewtonResult,
+    found: Mapping[str, float],
+    checked: Audit | None,
+) -> dict[str, Any]:
+    """Contact area by area, by the names of the result file."""
+    scale, contact = scene.units, assembly.contact
+    assert contact is not None
+    body = assembly.density(result.multipliers)
+    feet = footing(scene, assembly, result.surface, body)
+    rows = [
+        {
+            "index": int(which),
+            "center": scale.to_world(center).tolist(),
+            "force": float(np.linalg.norm(force)) * scale.force,
+            "force_vector": (scale.axes @ force * scale.force).tolist(),
+            "wet_area": float(area) * scale.length**2,
+            "contact_angle": 180.0,
+        }
+        for which, center, force, area in zip(
+            feet.which, feet.centers, feet.forces, feet.areas, strict=True
+        )
+        if which >= 0
+    ]
+    foot = np.pi * found["contact_radius"] ** 2 if "contact_radius" in found else 0.0
+    wet = float(feet.areas.sum()) * scale.length**2
+    return {
+        "wet_solids": len(feet.which),
+        "asperities": rows,
+        "wet_area": wet,
+        "wet_fraction": wet / foot if foot else None,
+        "max_penetration": checked.penetration * contact.length * scale.length if checked else None,
+        "support_force": -float(feet.total[2]) * scale.force,
+        "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
+    }
+
+
+def _contact_objection(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> tuple[Status, str | None, str] | None:
+    """What makes a converged state on a contact area no success, or None."""
+    contact = assembly.contact
+    assert contact is not None
+    feet = footing(scene, assembly, surface, assembly.density(multipliers))
+    if (feet.which < 0).any() and not isinstance(scene.substrate, Plane):
+        return (
+            Status.TOPOLOGY_CHANGE,
+            "touches_base",
+            "the liquid touches the plane under the asperities",
+        )
+    inside = engulfed(scene, assembly, surface)
+    if inside:
+        return (
+            Status.TOPOLOGY_CHANGE,
+            "engulfed",
+            f"{inside} asperities lie inside the liquid: the membrane has passed them; start from "
+            "the flat solution or with a smaller load",
+        )
+    return None
 
 
 def _named(

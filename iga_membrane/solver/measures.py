@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Sphere
+from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
 from ..terms import variations as vary
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
+from .footing import Footing, footing
 from .forces import pull_on_sphere, volume_over_cone
 
 
@@ -36,7 +38,12 @@ def measures(
     values["pressure"] = -body.constant * scale.pressure
     ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
     values["volume"] = volume(assembly, surface) * scale.length**3 + ends
-    if scene.kind == "sessile_droplet":
+    if scene.kind == "asperity_cell":
+        values["V_liq"] = values.pop("volume")
+        values |= _cell(scene, assembly, surface, body, values)
+    elif assembly.contact is not None:
+        values |= _on_an_area(scene, assembly, surface, body, values)
+    elif scene.kind == "sessile_droplet":
         values |= _droplet(scene, surface, values["A_wet"], body, scale)
     elif scene.kind == "film_between_rings":
         values |= _film(surface, body, scale)
@@ -87,6 +94,96 @@ def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
         if isinstance(t, Gravity)
     ]
     return float(-inside * sum(pull, np.zeros(3)) @ origin)
+
+
+def _on_an_area(
+    scene: Scene,
+    assembly: Assembly,
+    surface: Surface,
+    body: BodyDensity,
+    values: dict[str, float],
+) -> dict[str, float]:
+    """A drop whose foot is a contact area: the membrane is its whole skin."""
+    scale, found = scene.units, footing(scene, assembly, surface, body)
+    wet = float(found.areas.sum()) * scale.length**2
+    top = _farthest(surface, lambda x: x[..., 2])
+    foot = float(np.sqrt(base_area(scene, found) / np.pi))
+    return {
+        "A_LG": values["A_LG"] - wet,
+        "A_wet": wet,
+        "height": float(top[2]) * scale.length,
+        "equator_radius": _width(surface) * scale.length,
+        "p_apex": -(body.constant + float(np.dot(body.gradient, top))) * scale.pressure,
+        "p_base": -body.constant * scale.pressure,
+        "contact_radius": foot * scale.length,
+    }
+
+
+def _cell(
+    scene: Scene,
+    assembly: Assembly,
+    surface: Surface,
+    body: BodyDensity,
+    values: dict[str, float],
+) -> dict[str, float]:
+    """Contact with the one sphere of a cell and the membrane's sag beside it."""
+    assert isinstance(scene.substrate, Sphere)
+    scale, solid = scene.units, scene.units.local_sphere(scene.substrate)
+    found = footing(scene, assembly, surface, body)
+    force = -float(found.total[2])
+    radius = min(1.0, float(np.sqrt(found.projected.sum() / np.pi)) / solid.radius)
+    polar = float(np.arcsin(radius))
+    height = solid.radius * 2.0 * np.sin(0.5 * polar) ** 2
+    contact = solid.center[2] + solid.radius - height
+    wet = float(found.areas.sum())
+    edge, corner = _edge_heights(surface)
+    press = -body.constant * float(found.projected.sum())
+    return {
+        "A_LG": values["A_LG"] - wet * scale.length**2,
+        "A_wet": wet * scale.length**2,
+        "phi_deg": float(np.degrees(polar)),
+        "contact_radius": solid.radius * radius * scale.length,
+        "cap_height": height * scale.length,
+        "sag": (contact - edge) * scale.length,
+        "z_edge": edge * scale.length,
+        "z_corner": corner * scale.length,
+        "F_sphere": force * scale.force,
+        "F_press": press * scale.force,
+        "F_line": (force - press) * scale.force,
+    }
+
+
+def _edge_heights(surface: Surface) -> tuple[float, float]:
+    """Mean height of the membrane at the middles of a cell's sides and at its corners; on a circle
+    both are that of the rim."""
+    if surface.space.bases[0].periodic:
+        rim = float(surface.net[:, 0, 2].mean())
+        return rim, rim
+    ends = np.array([0.0, 0.5, 1.0])
+    grid = surface.at(np.stack(np.meshgrid(ends, ends, indexing="ij"), axis=-1), 1).position[..., 2]
+    sides = (grid[0, 1] + grid[1, 0] + grid[2, 1] + grid[1, 2]) / 4.0
+    corners = (grid[0, 0] + grid[0, 2] + grid[2, 0] + grid[2, 2]) / 4.0
+    return float(sides), float(corners)
+
+
+def base_area(scene: Scene, found: Footing) -> float:
+    """Area of the foot (dimensionless): of the wet spheres' lattice cells, of the convex hull of
+    a list of spheres, of the wet spot on a single solid."""
+    solid = scene.units.local_solid(scene.substrate) if scene.substrate is not None else None
+    on_sphere = found.which >= 0
+    if isinstance(solid, SphereLattice):
+        return float(on_sphere.sum() * solid.area_per_sphere)
+    if isinstance(solid, Spheres) and on_sphere.sum() >= 3:
+        return float(ConvexHull(found.centers[on_sphere, :2]).volume)
+    return float(found.projected.sum())
+
+
+def _width(surface: Surface) -> float:
+    """Largest distance of the membrane from the vertical axis through its middle."""
+    x = surface.grid(33, 33, 1).position[..., :2]
+    middle = 0.5 * (x.max(axis=(0, 1)) + x.min(axis=(0, 1)))
+    point = _farthest(surface, lambda x: np.linalg.norm(x[..., :2] - middle, axis=-1))
+    return float(np.linalg.norm(point[:2] - middle))
 
 
 def _droplet(

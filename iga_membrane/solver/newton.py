@@ -109,6 +109,8 @@ def newton(
     grading : of the arc length, or None to leave the parametrization alone.
     """
     count = assembly.multipliers
+    if assembly.contact is not None:
+        assembly.contact.begin()
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
         if multipliers is None and count:
@@ -152,7 +154,10 @@ def _iterate(
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")
+        near = assembly.near_contact(result.surface, displacement)
         longest = min(1.0, options.step_limit / size) if size > 0 else 1.0
+        if near > 0.5:
+            longest = min(longest, 0.5 / near)
         taken, moved = _search(assembly, system, result.surface, displacement, direction, longest)
         result.iterations.append(Iteration(residual, size, taken, direction.shift))
         if moved is None:
@@ -168,6 +173,8 @@ def _iterate(
             direction.multipliers - result.multipliers
         )
         full = taken == 1.0 and not direction.shift
+        if full and not assembly.settled(result.surface, near):
+            continue
         if full and (size <= options.tolerance or (residual <= 1e-12 and size <= 1e-6)):
             return  # converged, or at the rounding floor of an ill-conditioned state
         if grading is not None and polish:

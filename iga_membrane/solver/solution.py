@@ -54,7 +54,7 @@ class Solution:
     lambda_min: float | None
     audit: Audit | None = field(repr=False)
     hold_force: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), repr=False)
-    contact: Mapping[str, float | None] = field(default_factory=dict, repr=False)
+    contact: Mapping[str, Any] = field(default_factory=dict, repr=False)
     forces: tuple[ParticleForces, ...] = ()
     unknowns: int = 0
     iterations: Sequence[Iteration] = field(default=(), repr=False)

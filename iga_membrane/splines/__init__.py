@@ -1,8 +1,17 @@
 """Spline and Lagrange spaces: functions of two parameters, no geometry."""
 
-from .basis import Basis, bspline_basis, lagrange_basis, line_basis, periodic_basis, ring_basis
+from .basis import (
+    Basis,
+    bspline_basis,
+    lagrange_basis,
+    line_basis,
+    periodic_basis,
+    ring_basis,
+    uniform_basis,
+)
 from .grading import Grading
 from .knots import check_knots, greville, insertion_matrix, open_knots
+from .pillow import pillow_space
 from .polar import close_pole, net_of, points_of, ring_angles
 from .space import Space, tensor_space
 from .table import EdgeTable, Table
@@ -23,8 +32,10 @@ __all__ = [
     "net_of",
     "open_knots",
     "periodic_basis",
+    "pillow_space",
     "points_of",
     "ring_angles",
     "ring_basis",
     "tensor_space",
+    "uniform_basis",
 ]

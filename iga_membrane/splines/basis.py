@@ -140,6 +140,20 @@ def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basi
     )
 
 
+def uniform_basis(start: float, end: float, elements: int, degree: int) -> Basis:
+    """B-splines on equal knots that go on beyond both ends: the middle of an endless line."""
+    size = (end - start) / elements
+    window = np.arange(1 - degree, degree + 1) * size
+    return Basis(
+        degree,
+        np.linspace(start, end, elements + 1),
+        np.repeat(extraction(window[None], degree), elements, axis=0),
+        np.arange(elements)[:, None] + np.arange(degree + 1),
+        start + (np.arange(elements + degree) - 0.5 * (degree - 1)) * size,
+        degree - 1,
+    )
+
+
 def periodic_basis(
     elements: int, degree: int, length: float = 1.0, joints: Sequence[int] = ()
 ) -> Basis:

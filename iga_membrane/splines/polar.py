@@ -61,6 +61,8 @@ def close_pole(space: Space) -> Space:
 def net_of(space: Space, points: Array) -> Array:
     """(n1, n2, c) the full control net of control points (count, c)."""
     n1, n2 = space.net_shape
+    if space.shared is not None:
+        return points[space.shared].reshape(n1, n2, -1)
     if space.pole is None:
         return points.reshape(n1, n2, -1)
     net = np.empty((n1, n2, points.shape[1]))
@@ -77,6 +79,8 @@ def net_of(space: Space, points: Array) -> Array:
 def points_of(space: Space, net: Array) -> Array:
     """(count, c) control points of a full net; the best tangent plane at a pole."""
     n1, n2 = space.net_shape
+    if space.leaders is not None:
+        return net.reshape(n1 * n2, -1)[space.leaders]
     if space.pole is None:
         return net.reshape(n1 * n2, -1)
     centre = net[:, -1].mean(axis=0)

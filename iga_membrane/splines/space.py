@@ -34,6 +34,8 @@ class Space:
     near, combine : (k,) elements at a pole and (k, local, local) their functions by tensor
         products; empty without a pole.
     pole : continuity with which ``xi2 = end`` is closed to a point (0 or 1), or None.
+    shared, leaders : of a pillow (:mod:`.pillow`): (n1 * n2,) the control point of each place of
+        the net, and (count,) the first place of each control point.
     """
 
     bases: tuple[Basis, Basis]
@@ -43,6 +45,8 @@ class Space:
     near: Index = field(default_factory=lambda: np.zeros(0, int), repr=False)
     combine: Array = field(default_factory=lambda: np.zeros((0, 0, 0)), repr=False)
     pole: int | None = None
+    shared: Index | None = field(default=None, repr=False)
+    leaders: Index | None = field(default=None, repr=False)
 
     @property
     def degree(self) -> int:

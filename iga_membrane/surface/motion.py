@@ -61,6 +61,8 @@ class Spines:
     ----------
     surface : its points tell which edges lie in symmetry planes.
     supports : what restricts the motion.
+    directions : (count, 3) of the control points, the same at every step; if None the surface's
+        normals, blended into sliding edges.
 
     Attributes
     ----------
@@ -69,8 +71,14 @@ class Spines:
     held : (rows,) number of the gap constraint that belongs to a second row, else -1.
     """
 
-    def __init__(self, surface: Surface, supports: tuple[Support, ...] = ()) -> None:
+    def __init__(
+        self,
+        surface: Surface,
+        supports: tuple[Support, ...] = (),
+        directions: Array | None = None,
+    ) -> None:
         space = surface.space
+        self._given = directions
         self.space = space
         self._sliding = [s for s in supports if isinstance(s, Sliding)]
         self._mirrors: list[tuple[Index, int]] = []
@@ -115,6 +123,9 @@ class Spines:
         The blend ``d = (1 - w) m + w n`` with ``w`` the parametric distance from the edge is one
         smooth field over the patch; a jump in it would cost orders of magnitude.
         """
+        if self._given is not None:
+            rows = np.concatenate([self._given, np.zeros((1, 3))])
+            return Motion(self.points, rows, self.unknowns, self.size)
         space = surface.space
         normals = self._normals(surface)
         for support in self._sliding:

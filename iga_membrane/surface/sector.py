@@ -24,9 +24,17 @@ FOLDS = {"full": (), "half": (0.0,), "quarter": (0.0, 0.5), "eighth": (0.0, 0.5,
 def sector_table(space: Space, sector: Sector, points: tuple[int, int]) -> Table:
     """Functions at the Gauss points of one sector; elements astride a mirror plane have half the
     weight."""
+    elements, share = sector_elements(space, sector)
+    table = space.table(points, elements)
+    return replace(table, weights=table.weights * share[:, None])
+
+
+def sector_elements(space: Space, sector: Sector) -> tuple[Index, Array]:
+    """Elements of one sector, and the share of each that belongs to it."""
     one, two = space.bases
     if one.periodic:
-        return space.table(points, np.arange(one.elements // sector.copies * two.elements))
+        elements = np.arange(one.elements // sector.copies * two.elements)
+        return elements, np.ones(len(elements))
     share = np.ones((one.elements, two.elements))
     if sector.model != "full":
         share *= _upper_half(one.elements)[:, None]
@@ -35,14 +43,27 @@ def sector_table(space: Space, sector: Sector, points: tuple[int, int]) -> Table
     if sector.model == "eighth":
         share *= np.tri(one.elements) - 0.5 * np.eye(one.elements)
     elements = np.flatnonzero(share)
-    table = space.table(points, elements)
-    return replace(table, weights=table.weights * share.ravel()[elements, None])
+    return elements, share.ravel()[elements]
 
 
 def _upper_half(elements: int) -> Array:
     """Which elements of a line lie above its middle; one astride it counts half."""
     ahead = np.arange(elements) - 0.5 * (elements - 1)
     return np.asarray(0.5 * (1.0 + np.sign(ahead)))
+
+
+def mirrors(sector: Sector) -> list[Array]:
+    """Matrices (3, 3) that carry one sector to each of its images, itself first."""
+    images: list[Array] = [np.eye(3)]
+    for fold in FOLDS[sector.model]:
+        images += [m @ _mirror(fold) for m in images]
+    return images
+
+
+def _mirror(fold: float) -> Array:
+    turn = 2.0 * np.pi * fold
+    cosine, sine = np.cos(turn), np.sin(turn)
+    return np.array([[cosine, sine, 0.0], [sine, -cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
 def check_symmetric(surface: Surface, sector: Sector) -> None:
@@ -60,10 +81,7 @@ def check_symmetric(surface: Surface, sector: Sector) -> None:
         and float((rim[:, 0] * next_rim[:, 1] - rim[:, 1] * next_rim[:, 0]).sum()) < 0
     )
     for fold in FOLDS[sector.model]:
-        turn = 2.0 * np.pi * (-fold if clockwise else fold)
-        mirror = np.array(
-            [[np.cos(turn), np.sin(turn), 0.0], [np.sin(turn), -np.cos(turn), 0.0], [0.0, 0.0, 1.0]]
-        )
+        mirror = _mirror(-fold if clockwise else fold)
         off = float(np.abs(_image(surface.space, net, fold) - net @ mirror).max())
         if off > 1e-8 * surface.size:
             raise SceneError(
@@ -104,12 +122,13 @@ def sector_images(space: Space, sector: Sector) -> Index:
     if not ring.periodic and sector.model == "eighth" and ring.elements != other.elements:
         raise SceneError('model = "eighth" needs as many elements in both directions')
     n1, n2 = space.net_shape
-    net = np.arange(n1 * n2).reshape(n1, n2)
-    images = [_image(space, net, fold).ravel() for fold in FOLDS[sector.model]]
-    owner = net.ravel()
-    for _ in range(sector.copies):
-        for image in images:
-            owner = np.minimum(owner, owner[image])
+    net: Index = np.arange(n1 * n2) if space.shared is None else space.shared
+    net = net.reshape(n1, n2)
+    owner = np.arange(int(net.max()) + 1)
+    for fold in list(FOLDS[sector.model]) * sector.copies:
+        image = _image(space, net, fold)
+        least = np.minimum(owner[net], owner[image])
+        np.minimum.at(owner, net.ravel(), least.ravel())
     if space.pole is None:
         return owner
     rings = n2 - space.joined_rings

@@ -1,5 +1,6 @@
 """Terms: what the membrane pays for, with exact first and second variations."""
 
+from .contact import Contact
 from .contact_line import PlaneContactLine
 from .edge_gap import EdgeGap
 from .gravity import Gravity
@@ -14,6 +15,7 @@ __all__ = [
     "BodyTerm",
     "Centroid",
     "Constraint",
+    "Contact",
     "EdgeGap",
     "Gravity",
     "LineTerm",

@@ -9,16 +9,19 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Array
-from ..solids.sphere import Sphere
+from ..solids import Plane, Sphere, SphereLattice, Spheres
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
+
+
+AnySolid = Plane | Sphere | SphereLattice | Spheres
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,33 @@ class Scale:
         """A sphere in local, dimensionless coordinates."""
         x, y, z = (float(c) for c in self.to_local(np.array(sphere.center)))
         return Sphere(sphere.contact_angle, sphere.radius / self.length, (x, y, z))
+
+    def local_solid(self, solid: AnySolid) -> AnySolid:
+        """A solid in local, dimensionless coordinates.
+
+        Lattices and lists keep their frame: scenes with them are not turned or shifted.
+        """
+        unit = self.length
+        match solid:
+            case Plane():
+                return Plane(solid.contact_angle)
+            case Sphere():
+                return self.local_sphere(solid)
+            case SphereLattice():
+                return replace(
+                    solid,
+                    radius=solid.radius / unit,
+                    spacing=solid.spacing / unit,
+                    offset=(solid.offset[0] / unit, solid.offset[1] / unit),
+                    base=None if solid.base is None else solid.base / unit,
+                )
+            case Spheres():
+                return Spheres(
+                    solid.contact_angle,
+                    np.asarray(solid.centers) / unit,
+                    np.asarray(solid.radii) / unit,
+                    None if solid.base is None else solid.base / unit,
+                )
 
     def to_local(self, points: Array) -> Array:
         """Local, dimensionless coordinates of world points (..., 3)."""

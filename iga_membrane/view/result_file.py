@@ -38,9 +38,9 @@ def result(solution: Solution) -> dict[str, Any]:
         "measures": dict(solution.measures),
         "multipliers": dict(solution.multipliers),
         "contact": {
-            **solution.contact,
             "asperities": [],
             "touches_base": False,
+            **solution.contact,
             "hold_force": list(solution.hold_force),
         },
         "forces": [_forces(found) for found in solution.forces],

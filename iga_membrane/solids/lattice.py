@@ -1,0 +1,220 @@
+"""Asperities: spheres on a lattice, or anywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..arrays import Array, Index
+from ..checks import choice, contact_angle, number, vector
+from ..errors import SceneError
+from .nearest import Nearest, closer, nearest_of_balls
+
+ARRANGEMENTS = ("square", "hexagonal")
+
+
+@dataclass(frozen=True)
+class SphereLattice:
+    """Equal spheres on an unbounded lattice, their tops in z = 0.
+
+    Attributes
+    ----------
+    contact_angle : Young's angle in degrees, through the liquid.
+    radius : of the spheres.
+    spacing : between the centres of neighbours, >= 2 radius.
+    arrangement : "square", or "hexagonal" with neighbours along x.
+    offset : a sphere stands at x, y = offset.
+    base : height of a plane under the asperities, or None.
+    """
+
+    contact_angle: float
+    radius: float
+    spacing: float
+    arrangement: str = "square"
+    offset: tuple[float, float] = (0.0, 0.0)
+    base: float | None = None
+
+    def __post_init__(self) -> None:
+        angle = contact_angle("substrate.contact_angle", self.contact_angle)
+        object.__setattr__(self, "contact_angle", angle)
+        radius = number("substrate.radius", self.radius, above=0.0)
+        object.__setattr__(self, "radius", radius)
+        spacing = number("substrate.spacing", self.spacing, least=2.0 * radius)
+        object.__setattr__(self, "spacing", spacing)
+        choice("substrate.arrangement", self.arrangement, ARRANGEMENTS)
+        x, y, _ = vector("substrate.offset", [*self.offset, 0.0])
+        object.__setattr__(self, "offset", (x, y))
+        if self.base is not None:
+            base = number("substrate.base", self.base, most=0.0)
+            object.__setattr__(self, "base", base)
+
+    @property
+    def scale(self) -> float:
+        """Length over which contact changes."""
+        return self.radius
+
+    def radius_of(self, which: Index) -> Array:
+        """(...) radii of spheres by their numbers."""
+        return np.full(np.shape(which), self.radius)
+
+    @property
+    def area_per_sphere(self) -> float:
+        """Of the lattice's cell."""
+        return float(self.spacing**2 * (1.0 if self.arrangement == "square" else np.sqrt(0.75)))
+
+    def nearest(self, points: Array) -> Nearest:
+        """Gap and its derivatives, by rounding to lattice sites: the cost of a point does not
+        depend on the number of asperities."""
+        i, j = self._site(points[..., 0] - self.offset[0], points[..., 1] - self.offset[1])
+        which = np.asarray((i + HALF) * (2 * HALF) + (j + HALF))
+        found = nearest_of_balls(points, self._place(i, j), np.asarray(self.radius), which)
+        return found if self.base is None else closer(found, plane_below(points, self.base))
+
+    def center_of(self, which: Index) -> Array:
+        """(..., 3) centres of spheres by their numbers."""
+        i, j = np.divmod(np.asarray(which), 2 * HALF)
+        return self._place(i - HALF, j - HALF)
+
+    def within(self, reach: float) -> Index:
+        """Numbers of the spheres whose centres lie within a distance of the z axis."""
+        steps = int(np.ceil((reach + np.abs(self.offset).max()) / (0.8 * self.spacing))) + 1
+        i, j = np.meshgrid(np.arange(-steps, steps + 1), np.arange(-steps, steps + 1))
+        place = self._place(i, j)
+        inside = np.hypot(place[..., 0], place[..., 1]) <= reach
+        return np.asarray((i[inside] + HALF) * (2 * HALF) + (j[inside] + HALF))
+
+    def _site(self, x: Array, y: Array) -> tuple[Index, Index]:
+        """Lattice numbers of the nearest centre in the plane."""
+        if self.arrangement == "square":
+            i, j = np.rint(x / self.spacing), np.rint(y / self.spacing)
+            return i.astype(int), j.astype(int)
+        rise = np.sqrt(0.75) * self.spacing
+        best, site = np.full(np.shape(x), np.inf), None
+        for offset in (0.0, 0.5):
+            # the hexagonal lattice is two rectangular ones
+            j = 2.0 * np.rint(0.5 * (y / rise) - offset) + 2.0 * offset
+            i = np.rint(x / self.spacing - 0.5 * j)
+            square = (x - self.spacing * (i + 0.5 * j)) ** 2 + (y - rise * j) ** 2
+            wins = square < best
+            site = (i, j) if site is None else (np.where(wins, i, site[0]),
+                                                np.where(wins, j, site[1]))  # fmt: skip
+            best = np.where(wins, square, best)
+        assert site is not None
+        return site[0].astype(int), site[1].astype(int)
+
+    def _place(self, i: Index, j: Index) -> Array:
+        if self.arrangement == "square":
+            x, y = self.spacing * i, self.spacing * j
+        else:
+            x, y = self.spacing * (i + 0.5 * j), np.sqrt(0.75) * self.spacing * j
+        return np.stack(
+            [x + self.offset[0], y + self.offset[1], np.full(np.shape(x), -self.radius)], axis=-1
+        )
+
+
+HALF = 1 << 20
+"""Lattice sites are numbered from minus to plus this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spheres:
+    """Any spheres.
+
+    Attributes
+    ----------
+    contact_angle : Young's angle in degrees, one or one per sphere.
+    centers : (n, 3).
+    radii : (n,) or one for all.
+    base : height of a plane under them, or None.
+    """
+
+    contact_angle: float | Sequence[float] | Array
+    centers: Sequence[Sequence[float]] | Array
+    radii: float | Sequence[float] | Array
+    base: float | None = None
+
+    def __post_init__(self) -> None:
+        places = np.array(
+            [vector(f"substrate.centers[{i}]", c) for i, c in enumerate(self.centers)]
+        ).reshape(-1, 3)
+        if not len(places):
+            raise SceneError("substrate.centers = []: at least one sphere is needed")
+        count = len(places)
+        sizes = _each("substrate.radii", self.radii, count)
+        for i, r in enumerate(sizes):
+            number(f"substrate.radii[{i}]", r, above=0.0)
+        angles = _each("substrate.contact_angle", self.contact_angle, count)
+        for angle in set(angles.tolist()):
+            contact_angle("substrate.contact_angle", angle)
+        if self.base is not None:
+            object.__setattr__(self, "base", number("substrate.base", self.base))
+        for name, value in (("centers", places), ("radii", sizes), ("contact_angle", angles)):
+            object.__setattr__(self, name, value)
+
+    @property
+    def scale(self) -> float:
+        """Length over which contact changes: the smallest radius."""
+        return float(np.min(self.radii))
+
+    def radius_of(self, which: Index) -> Array:
+        """(...) radii of spheres by their numbers."""
+        return np.asarray(self.radii)[which]
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(np.asarray(self.centers))
+
+    def nearest(self, points: Array) -> Nearest:
+        """Gap and its derivatives, by a tree."""
+        flat = points.reshape(-1, 3)
+        centers, radii = np.asarray(self.centers), np.asarray(self.radii)
+        distance, which = self._tree.query(flat)
+        which = np.asarray(which)
+        smallest, largest = float(radii.min()), float(radii.max())
+        if largest > smallest:
+            which = self._smallest_gap(flat, distance, which, radii)
+        which = which.reshape(points.shape[:-1])
+        found = nearest_of_balls(points, centers[which], radii[which], which)
+        return found if self.base is None else closer(found, plane_below(points, self.base))
+
+    def _smallest_gap(self, flat: Array, distance: Array, which: Index, radii: Array) -> Index:
+        """Among spheres of several sizes the nearest centre need not be the nearest surface."""
+        reach = distance - radii[which] + radii.max()
+        lists = self._tree.query_ball_point(flat, reach * (1 + 1e-12))
+        lengths = np.array([len(each) for each in lists])
+        candidates = np.concatenate([np.asarray(each, int) for each in lists])
+        owner = np.repeat(np.arange(len(flat)), lengths)
+        away = flat[owner] - np.asarray(self.centers)[candidates]
+        gap = np.sqrt(np.einsum("ki,ki->k", away, away)) - radii[candidates]
+        order = np.lexsort((candidates, gap, owner))
+        first = np.searchsorted(owner[order], np.arange(len(flat)))
+        return candidates[order][first]
+
+    def center_of(self, which: Index) -> Array:
+        """(..., 3) centres of spheres by their numbers."""
+        return np.asarray(self.centers)[which]
+
+    def within(self, reach: float) -> Index:
+        """Numbers of the spheres whose centres lie within a distance of the z axis."""
+        centers = np.asarray(self.centers)
+        return np.flatnonzero(np.hypot(centers[:, 0], centers[:, 1]) <= reach)
+
+
+def plane_below(points: Array, height: float) -> Nearest:
+    """The plane z = height as nearest surface."""
+    up = np.broadcast_to([0.0, 0.0, 1.0], points.shape)
+    shape = points.shape[:-1]
+    return Nearest(points[..., 2] - height, up, np.zeros(shape), np.full(shape, -1))
+
+
+def _each(field: str, value: float | Sequence[float] | Array, count: int) -> Array:
+    values = np.asarray(value, float)
+    if values.ndim == 0:
+        return np.full(count, float(values))
+    if values.shape != (count,):
+        raise SceneError(f"{field}: {len(values)} given for {count} spheres; one or one per sphere")
+    return values

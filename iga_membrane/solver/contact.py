@@ -1,0 +1,156 @@
+"""Contact in the unknowns: exact by multipliers, or the paper's penalty.
+
+Exact contact holds the gap of one point of every element, its middle, at zero or above: as many
+points as control points, so the tractions there are determined. Where the membrane still dips into
+the solid beside that point, by more than is allowed, the point is lifted by the depth. The
+augmented Lagrangian
+
+    sum_q w_q / (2 delta) ((delta lambda_q - g_q)_+^2 - (delta lambda_q)^2)
+
+is once differentiable, so Newton's method with a line search serves from any start; its active set
+is ``delta lambda_q > g_q``. Multipliers are updated and ``delta`` is reduced as the steps become
+small, in the manner of the primal-dual active set method (Hueber, Wohlmuth,
+doi 10.1016/j.cma.2004.08.011). A penalty is the same without multipliers, at all quadrature points.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, Index
+from ..solids import Nearest, Solid
+from ..splines import Space, Table
+
+SOFT = 0.025
+"""First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
+HARDER = 0.03
+"""Factor of one tightening."""
+HARD = 0.03
+"""Last ``delta`` over the first."""
+SAMPLES = 12
+"""Points along an element at which the membrane's depth is sampled."""
+LIFTS = 10
+"""How often the contact points are lifted at most."""
+SETTLED = 1e-6
+"""Gap of an active point over the contact length that counts as none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """Contact at one state.
+
+    Attributes
+    ----------
+    at : nearest surfaces at the contact points (elements, points).
+    traction : (elements, points) pressure of the solid on the membrane, per reference area.
+    """
+
+    at: Nearest
+    traction: Array
+
+
+class ContactSet:
+    """The contact of a membrane with one solid, on one sector.
+
+    Parameters
+    ----------
+    solid : in the scene's scale.
+    table : functions of the membrane at the contact points.
+    area : (elements, points) reference area of each contact point.
+    penalty : traction per depth, or None for exact contact.
+    depth : allowed depth over the contact length, for exact contact.
+    space : of the membrane, and elements : (elements,) of it, to sample the depth.
+
+    Attributes
+    ----------
+    length : contact length: the smallest radius, 1 for a plane.
+    elements : (elements,) of the space.
+    multipliers : (elements, points) tractions, >= 0.
+    settled : whether the multipliers hold the gap.
+    """
+
+    def __init__(
+        self,
+        solid: Solid,
+        table: Table,
+        area: Array,
+        penalty: float | None,
+        depth: float,
+        space: Space,
+        elements: Index,
+    ) -> None:
+        self.solid, self.table, self.area = solid, table, area
+        self.elements = elements
+        self._space, self._depth = space, depth
+        self._lift = np.zeros(area.shape)
+        self._lifts = LIFTS
+        self.length = solid.scale
+        self.exact = penalty is None
+        self.multipliers: Array = np.zeros(area.shape)
+        self._soft = SOFT * self.length**2
+        self.delta = self._soft if penalty is None else 1.0 / penalty
+        self.settled = not self.exact
+
+    def begin(self) -> None:
+        """Soft again and without lifts, from the multipliers at hand."""
+        if self.exact:
+            self.delta, self.settled = self._soft, False
+            self._lift[:], self._lifts = 0.0, LIFTS
+
+    def touch(self, points: Array) -> Touch:
+        """Gaps and tractions for control points (count, 3)."""
+        at = self.solid.nearest(self.table.values @ points[self.table.functions])
+        gap = at.gap - self._lift
+        return Touch(at, np.maximum(self.multipliers - gap / self.delta, 0.0))
+
+    def energy(self, touch: Touch) -> float:
+        """Energy of the penalty or of the augmented Lagrangian."""
+        square = touch.traction**2 - self.multipliers**2
+        return float(0.5 * self.delta * (square * self.area).sum())
+
+    def forces(self, touch: Touch) -> Array:
+        """(elements, local, 3) derivative of the energy by local control points."""
+        push = -(touch.traction * self.area)[..., None] * touch.at.normal
+        return np.asarray(self.table.values.transpose(0, 2, 1) @ push)
+
+    def hessian(self, touch: Touch, directions: Array) -> tuple[Index, Array]:
+        """Elements in contact and the second derivative along directions (control points, 3)."""
+        near = np.flatnonzero((touch.traction > 0).any(axis=1))
+        rows, at = self.table.values[near], touch.at
+        d = directions[self.table.functions[near]]
+        bent = self.area[near] * touch.traction[near] * at.bend[near]
+        stiff = self.area[near] * (touch.traction[near] > 0) / self.delta
+        u = rows * (at.normal[near] @ d.transpose(0, 2, 1))
+        blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
+        blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))
+        return near, blocks
+
+    def give(self, touch: Touch) -> float:
+        """Depth by which the stiffest contact would give way without multipliers."""
+        return float(self.delta * touch.traction.max(initial=0.0))
+
+    def tighten(self, touch: Touch, points: Array) -> None:
+        """Take the tractions as multipliers and reduce ``delta``; lift points that dip too deep."""
+        if not self.exact:
+            return
+        change = self.delta * np.abs(touch.traction - self.multipliers).max(initial=0.0)
+        self.settled = change <= SETTLED * self.length
+        self.multipliers = touch.traction
+        hard = self.delta <= HARD * self._soft
+        self.delta = max(HARDER * self.delta, HARD * self._soft)
+        if hard and self._lifts:
+            self.settled &= not self._lift_points(touch, points)
+
+    def _lift_points(self, touch: Touch, points: Array) -> bool:
+        """Lift the contact points of elements that lie too deep; whether there were any."""
+        self._lifts -= 1
+        near = np.flatnonzero((touch.at.gap < 0.5 * self.length).any(axis=1))
+        dense = self._space.table(SAMPLES, self.elements[near])
+        gap = self.solid.nearest(dense.values @ points[dense.functions]).gap
+        depth = -gap.min(axis=1, initial=0.0)
+        allowed = self._depth * self.length
+        deep = depth > 0.8 * allowed
+        self._lift[near[deep]] += depth[deep, None] - 0.5 * allowed
+        return bool(deep.any())

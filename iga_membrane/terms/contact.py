@@ -1,0 +1,37 @@
+"""Contact without a contact line: the membrane may lie on a solid but not in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..checks import number
+from ..solids import Plane, Sphere, SphereLattice, Spheres
+from .term import Scale, Term
+
+
+@dataclass(frozen=True, eq=False)
+class Contact(Term):
+    """The gap to a solid is not negative, paper section 4.
+
+    Attributes
+    ----------
+    solid : plane, sphere, lattice or list of spheres.
+    penalty : None holds the gap exactly; else the traction per depth of paper eq. (24), which lets
+        the membrane sink in.
+    depth : how deep the membrane may dip into the solid between contact points, over the radius
+        of the smallest sphere (plane: over the scene's length).
+    """
+
+    solid: Plane | Sphere | SphereLattice | Spheres
+    penalty: float | None = None
+    depth: float = 1e-2
+    name = "contact"
+
+    def __post_init__(self) -> None:
+        if self.penalty is not None:
+            number("solver.penalty", self.penalty, above=0.0)
+        number("solver.penetration_tolerance", self.depth, above=0.0)
+
+    def scaled(self, scale: Scale) -> Contact:
+        eps = None if self.penalty is None else self.penalty * scale.length**2 / scale.tension
+        return Contact(scale.local_solid(self.solid), eps, self.depth)
