@@ -1,0 +1,108 @@
+"""Sheets with a square rim on a particle: convergence, symmetry, forces as derivatives of the
+energy."""
+
+import numpy as np
+import pytest
+from helpers import particle_sheet, slopes
+
+import iga_membrane as iga
+
+
+def solved(angle, **options):
+    return iga.solve(particle_sheet(angle, boundary="square", **options))
+
+
+@pytest.fixture(scope="module")
+def fine():
+    """Energy and line force on a mesh fine enough to be called exact, by contact angle."""
+    found = {}
+
+    def at(angle):
+        if angle not in found:
+            found[angle] = solved(angle, elements=12).measures
+        return found[angle]
+
+    return at
+
+
+@pytest.mark.parametrize("angle", [30, 60, 120, 150])
+def test_four_elements_are_enough(angle, fine):
+    coarse, exact = solved(angle, elements=4).measures, fine(angle)
+    assert coarse["energy"] == pytest.approx(exact["energy"], rel=1e-8)
+    line = exact["F_CL"]
+    assert abs(coarse["F_CL"] - line) <= 1e-6 * max(abs(line), 1.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angle", [5, 30, 60, 90, 120, 150, 175])
+def test_the_finest_mesh_changes_nothing(angle, fine):
+    finest = solved(angle, elements=24).measures
+    for name in ("energy", "F_CL", "phi_deg"):
+        assert fine(angle)[name] == pytest.approx(finest[name], rel=1e-8, abs=1e-8), name
+
+
+@pytest.mark.parametrize(("degree", "allowed"), [(2, 1e-7), (3, 1e-9)])
+@pytest.mark.parametrize("angle", [60, 120])
+def test_energy_converges_at_twice_the_degree(angle, degree, allowed, fine):
+    errors = [
+        solved(angle, degree=degree, elements=elements).measures["energy"] / fine(angle)["energy"]
+        - 1.0
+        for elements in (4, 8, 16)
+    ]
+    assert np.all(slopes(errors) >= 2 * degree - 0.3)
+    assert abs(errors[-1]) <= allowed
+
+
+def test_all_models_are_one_sheet():
+    found = [
+        solved(90, pressure=0.1, elements=4, model=model).measures
+        for model in ("full", "half", "quarter", "eighth")
+    ]
+    for other in found[1:]:
+        assert other == pytest.approx(found[0], rel=1e-10, abs=1e-11)
+
+
+@pytest.mark.parametrize("boundary", ["circle", "square"])
+@pytest.mark.parametrize("pressure", [0.0, 0.1])
+def test_force_off_the_middle_is_minus_the_slope_of_the_energy(boundary, pressure):
+    mesh = {"elements": 6 if boundary == "circle" else 4}
+    options = {"boundary": boundary, "pressure": pressure, **mesh}
+
+    def at(place):
+        return iga.solve(particle_sheet(90, center=tuple(place), **options))
+
+    place, step = np.array([0.3, 0.4, -1.0]), 3e-3
+    forces = at(place).forces[0]
+    found = forces.contact_line + forces.hydrostatic + forces.buoyancy
+    energies = [
+        [at(place + sign * axis).measures["energy"] for sign in (1, -1)]
+        for axis in step * np.eye(3)
+    ]
+    slope = np.diff(energies, axis=1).ravel() / (2.0 * step)
+    assert np.abs(found - slope).max() <= 3e-6 * np.linalg.norm(found)
+    # the wide side of the sheet hangs less steeply, so the sheet centres the particle
+    assert found[0] < 0
+    assert found[1] < 0
+    assert found[1] < found[0]
+
+
+def test_a_particle_in_the_middle_is_pulled_straight_up():
+    forces = solved(90, elements=4, model="full").forces[0]
+    assert np.abs(forces.effective[:2]).max() <= 1e-12
+    assert forces.effective[2] > 1.0
+
+
+def test_a_square_sheet_pulls_less_steeply_than_a_circular_one_inside_it():
+    square = solved(90).measures["F_CL"]
+    inscribed = iga.solve(particle_sheet(90, boundary="circle")).measures["F_CL"]
+    around = iga.solve(particle_sheet(90, boundary="circle", size=5.0 * np.sqrt(2.0)))
+    assert around.measures["F_CL"] < square < inscribed
+
+
+@pytest.mark.parametrize("place", [(0.3, 0.0), (0.0, 0.3), (0.3, 0.4)])
+def test_the_model_follows_the_place_of_the_particle(place):
+    smallest = "half" if place[1] == 0.0 else "full"
+    center = (*place, -1.0)
+    assert particle_sheet(90, boundary="square", center=center).sector.model == smallest
+    with pytest.raises(iga.SceneError, match="no such mirror planes"):
+        particle_sheet(90, boundary="square", center=center, model="eighth")
