@@ -125,3 +125,19 @@ def test_a_square_sheet_under_a_small_load_is_the_linear_membrane():
     assert abs(off[0]) <= 5e-6
     # what is left is the geometric nonlinearity, quadratic in the load
     assert np.array(off[1:]) == pytest.approx(0.0201 * np.array([0.1, 0.2, 0.4]) ** 2, rel=1e-2)
+
+
+@pytest.mark.parametrize("elements", [7, 8])
+def test_all_models_of_a_square_sheet_agree(elements):
+    found = [
+        iga.solve(
+            iga.liquid_sheet(
+                size=1.0,
+                pressure=1.0,
+                discretization=iga.Discretization(elements=elements, model=model),
+            )
+        ).measures
+        for model in ("full", "half", "quarter", "eighth")
+    ]
+    for other in found[1:]:
+        assert other == pytest.approx(found[0], rel=1e-10, abs=1e-12)
