@@ -99,6 +99,40 @@ def test_force_off_the_middle_is_minus_the_slope_of_the_energy(boundary, load):
     assert found[1] < found[0]
 
 
+@pytest.mark.parametrize("weighs", [True, False])
+@pytest.mark.parametrize("boundary", ["circle", "square"])
+def test_forces_off_the_middle_split_into_line_and_pressure(boundary, weighs):
+    """F_CL by tractions along the line; the rest by quadrature of the pressure over the cap."""
+    center, gravity = np.array([0.5, 0.7, -1.0]), 0.3
+    scene = particle_sheet(
+        90, boundary=boundary, center=tuple(center), gravity=gravity, liquid_weight=weighs,
+        pressure=0.1,
+    )  # fmt: skip
+    solution = iga.solve(scene)
+    forces = solution.forces[0]
+    line = iga.contact_line(solution.surface, solid=scene.substrate)
+    # tangents converge slower than energies
+    assert forces.contact_line == pytest.approx(-line.arc @ line.conormal, rel=1e-3)
+    away = line.position - center
+    turn = line.arc * (away[:, 0] * line.tangent[:, 1] - away[:, 1] * line.tangent[:, 0])
+    turn /= away[:, 0] ** 2 + away[:, 1] ** 2
+    azimuth = np.arctan2(away[:, 1], away[:, 0])[:, None]
+    end = np.arccos(away[:, 2] / np.linalg.norm(away, axis=1))[:, None]
+    u, w = np.polynomial.legendre.leggauss(12)
+    polar = 0.5 * (u + 1.0) * end
+    normal = np.stack(
+        [np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=-1
+    )
+    pressure = 0.1 - gravity * (center[2] + normal[..., 2])
+    weights = 0.5 * w * end * np.sin(polar) * turn[:, None]
+    pushed = -np.einsum("kq,kqi->i", weights * pressure, normal)
+    assert forces.hydrostatic + forces.buoyancy == pytest.approx(pushed, rel=1e-5, abs=1e-6)
+    # Archimedes' volume over the cone: 1/3 of the flux of the position from the line's centroid
+    apex = line.arc @ line.position / line.arc.sum()
+    volume = np.einsum("kq,kqi,kqi->", weights, center + normal - apex, normal) / 3.0
+    assert forces.buoyancy == pytest.approx([0.0, 0.0, gravity * volume], rel=1e-5)
+
+
 def test_a_particle_in_the_middle_is_pulled_straight_up():
     forces = solved(90, elements=4, model="full").forces[0]
     assert np.abs(forces.effective[:2]).max() <= 1e-12
