@@ -52,3 +52,19 @@ def pinned_cap(opening, terms, model="full", *, rim=1.0, kind="bspline", degree=
 
     surface = axisymmetric(drop_space(kind, degree, elements, angle=opening), profile)
     return iga.Scene(surface, terms, [iga.Fixed("xi2=0"), iga.Sector(model)])
+
+
+def particle_sheet(
+    angle, *, center=(0.0, 0.0, -1.0), boundary="circle", size=5.0, density=1.0, **options
+):
+    """Sheet on a particle of radius 1 whose top just reaches it."""
+    named = ("space", "degree", "elements", "model")
+    mesh = {name: options.pop(name) for name in named if name in options}
+    particle = iga.Sphere(contact_angle=angle, radius=1.0, center=center, density=density)
+    return iga.liquid_sheet(
+        particle,
+        size=size,
+        boundary=boundary,
+        discretization=iga.Discretization(**mesh),
+        **options,
+    )

@@ -190,9 +190,11 @@ def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any
     indices = [int(step[1:-1]) if step.startswith("[") else step for step in steps]
     try:
         for step in indices[:-1]:
-            place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
+            place = place.setdefault(step, {}) if isinstance(step, str) else place[step]
+        if isinstance(indices[-1], int):
+            place[indices[-1]]  # only what is there can be counted through
         place[indices[-1]] = value
-    except (IndexError, KeyError, TypeError) as error:
+    except (AttributeError, IndexError, KeyError, TypeError) as error:
         raise SceneError(
             f"path[0].parameter = {parameter!r}: there is no such place in the scene file"
         ) from error

@@ -232,6 +232,8 @@ def _grading(surface: Surface, size: float) -> Grading:
     errors of round and square rims (docs/results/sheet_and_particle.md)."""
     inner = surface.net[:, 0, :2]
     radius = np.linalg.norm(inner - inner.mean(axis=0), axis=1).mean()
+    if not radius > 0:
+        raise SceneError("start: its inner edge is a point; give it a ring round the particle")
     rate = 0.8 * np.log(0.5 * size / radius)
     return Grading(float(rate / np.expm1(rate))) if rate > 0 else Grading()
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, Index
 from ..checks import contact_angle, number, vector
+from ..errors import GeometryError
 from .nearest import Nearest, nearest_of_balls
 
 
@@ -49,11 +50,18 @@ class Sphere:
     def normal(self, points: ArrayLike) -> Array:
         """(..., 3) gradient of the gap, out of the solid: paper eq. (27).
 
-        At the centre, where it does not exist, the result is not a number.
+        Raises
+        ------
+        GeometryError
+            At the centre, where there is no normal.
         """
         away, distance = self.offset(points)
-        with np.errstate(invalid="ignore"):
-            return np.asarray(away / distance[..., None])
+        if np.any(distance == 0.0):
+            raise GeometryError(
+                f"a point of the membrane lies at the centre {self.center} of a sphere: no "
+                "direction leads out of it"
+            )
+        return np.asarray(away / distance[..., None])
 
     def gap_hessian(self, points: ArrayLike) -> Array:
         """(..., 3, 3) second derivative of the gap, ``(1 - n n) / distance``."""

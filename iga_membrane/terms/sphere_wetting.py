@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..checks import choice, line_angle, number
+from ..errors import GeometryError
 from ..solids.sphere import Sphere
 from ..splines import EdgeTable
 from .term import LINE_EDGES, BodyDensity, LineTerm, Scale
@@ -82,6 +83,8 @@ class SphereContactLine(LineTerm):
         x = table.values @ local - np.array(self.sphere.center)
         dx = table.d @ local
         s = x[..., 0] ** 2 + x[..., 1] ** 2
+        if not np.all(s > 0.0):
+            raise GeometryError("the contact line meets the vertical axis of its sphere")
         z = x[..., 2]
         r = np.sqrt(s + z * z)
         t = z / r

@@ -51,4 +51,4 @@ def test_figure11():
     assert all(np.all(np.diff(curve["F_e"]) < 0) for curve in curves.values())
     assert example.critical_angle(0.1) == pytest.approx(144.05640220715, abs=1e-5)
     assert example.critical_angle(1.0, name="F_e_down") is None
-    assert example.largest_bond(0.5) == pytest.approx(1.17, rel=2e-2)
+    assert example.largest_bond(1.0) == pytest.approx(1.17, rel=2e-2)

@@ -3,6 +3,7 @@
 import copy
 import json
 import time
+import tomllib
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import iga_membrane as iga
+from iga_membrane.cli import main
 from iga_membrane.scenes.scene_file import KEYS
 
 GOOD = {
@@ -220,3 +222,107 @@ def test_mutated_files_give_typed_errors_or_valid_scenes(seed):
         iga.read_scene(data)
     except iga.SceneError:
         return
+
+
+PATHS = {
+    "substrate.contact_angle": ("""
+scene = "sessile_droplet"
+[liquid]
+volume = 4.1887902047863905
+[gravity]
+acceleration = 1.0
+[substrate]
+contact_angle = 90.0
+""", (90, 120, 150), "height"),
+    "particle[0].center[2]": ("""
+scene = "liquid_sheet"
+[[particle]]
+radius = 1.0
+center = [0.0, 0.0, -1.0]
+contact_angle = 90.0
+[sheet]
+size = 5.0
+""", (-1.3, -1.0, -0.8), "z_contact"),
+    "rings.volume": ("""
+scene = "film_between_rings"
+[rings]
+half_height = 0.5
+""", (2.0, 3.0), "neck_radius"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("parameter", PATHS)
+def test_a_path_is_walked_from_the_command_line(parameter, tmp_path):
+    text, values, rising = PATHS[parameter]
+    text += "[discretization]\nelements = 6\n"
+    scene, out = tmp_path / "scene.toml", tmp_path / "out"
+    scene.write_text(f'{text}[[path]]\nparameter = "{parameter}"\nvalues = {list(values)}\n')
+    assert main(["solve", str(scene), "--out", str(out)]) == 0
+    result = json.loads((out / "result.json").read_text())
+    assert result["scene"]["path"] == [{"parameter": parameter, "values": list(values)}]
+    stops = [step for step in result["history"] if step["measures"]]
+    assert [step["value"] for step in stops] == list(values)
+    found = [step["measures"][rising] for step in stops]
+    assert found == sorted(found)
+    assert stops[-1]["measures"] == result["measures"]
+    direct = iga.read_scene(tomllib.loads(text) | {"path": []}).scene
+    assert direct.kind == iga.load_scene(scene).scene.kind
+
+
+def test_a_path_through_a_limit_exits_with_its_bracket(tmp_path):
+    scene, out = tmp_path / "scene.toml", tmp_path / "out"
+    scene.write_text(
+        'scene = "liquid_sheet"\n[sheet]\nboundary = "circle"\nsize = 2.0\n'
+        "[discretization]\nelements = 8\n"
+        '[[path]]\nparameter = "sheet.pressure"\nvalues = [0.0, 1.0, 2.1]\n'
+    )
+    assert main(["solve", str(scene), "--out", str(out)]) == 3
+    result = json.loads((out / "result.json").read_text())
+    assert result["status"] == "LIMIT_POINT"
+    bracket = result["bracket"]
+    assert bracket["parameter"] == "sheet.pressure"
+    assert bracket["lo"] <= 2.0 <= bracket["hi"]
+    assert bracket["hi"] - bracket["lo"] <= 1e-3
+    assert (bracket["index_lo"], bracket["index_hi"]) == (0, 1)
+    assert [step["value"] for step in result["history"] if step["measures"]] == [0.0, 1.0]
+
+
+def test_a_path_off_the_axis_takes_the_largest_model_it_needs():
+    data = {
+        "scene": "liquid_sheet",
+        "sheet": {"size": 5.0},
+        "particle": [{"radius": 1.0, "center": [0, 0, -1], "contact_angle": 90.0}],
+        "path": [{"parameter": "particle[0].center[0]", "values": [0.3, 0.0]}],
+    }
+    scene = iga.read_scene(data).scene
+    assert scene.sector.model == "half"
+    assert [scene.ramp(load).sector.model for load in (0.0, 1.0)] == ["half", "half"]
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ({"values": [1, 2]}, "path[0].parameter: missing"),
+        ({"parameter": "substrate.contact_angle"}, "path[0].values: missing"),
+        ({"parameter": "substrate.contact_angle", "values": [90]}, "two or more"),
+        ({"parameter": "substrate.contact_angle", "values": 90}, "path[0].values = 90"),
+        ({"parameter": "substrate.contact_angle", "values": [90, "120"]}, "path[0].values[1]"),
+        ({"parameter": "substrate.contact_angle", "values": [90, 200]}, "contact_angle = 200"),
+        ({"parameter": "substrate.contact_angel", "values": [90, 120]}, "path[0].parameter"),
+        ({"parameter": "contact_angle", "values": [90, 120]}, "path[0].parameter"),
+        ({"parameter": "gravity.direction[7]", "values": [0, 1]}, "no such place"),
+        ({"parameter": "substrate.contact_angle.x", "values": [0, 1]}, "path[0].parameter"),
+        ({"parameter": "particle[0].center[2]", "values": [0, 1]}, "no such place"),
+        ({"parameter": "substrate.contact_angle", "values": [90, float("nan")]}, "values[1]"),
+        ({"parameter": "substrate.contact_angle", "value": [90, 120]}, "path[0].value"),
+        ({"parameter": 3.0, "values": [90, 120]}, "path[0].parameter"),
+        ({"parameter": "droplet.hold", "values": [0, 1]}, "hold"),
+    ],
+)
+def test_bad_paths_are_named(path, said):
+    assert said in refusal(changed("path", [path]))
+
+
+def test_a_second_path_is_not_available_yet():
+    path = {"parameter": "substrate.contact_angle", "values": [90, 120]}
+    assert "2 [[path]] tables: not available yet" in refusal(changed("path", [path, path]))
