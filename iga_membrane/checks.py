@@ -92,17 +92,6 @@ def contact_angle(field: str, value: Any) -> float:
     return number(field, value, above=0.0, most=180.0, unit="degrees, through the liquid")
 
 
-def line_angle(field: str, value: Any) -> float:
-    """Contact angle at which there is a contact line."""
-    angle = contact_angle(field, value)
-    if angle == 180.0:
-        raise SceneError(
-            f"{field} = 180.0: not available yet in this version: at 180 degrees the foot is a "
-            "contact area without a contact line; give an angle < 180"
-        )
-    return angle
-
-
 def suggestion(word: Any, allowed: Iterable[str]) -> str:
     """``; did you mean "..."?`` where a word is close to an allowed one."""
     close = get_close_matches(str(word), list(allowed), 1)

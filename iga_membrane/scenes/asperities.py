@@ -20,6 +20,8 @@ from .start import Pancake, least_energy_pancake
 STARTS = ("flat", "above", "touching")
 PER_RADIUS = 3.35
 """Elements along the radius of the smallest asperity, by default."""
+FEWEST = 36
+"""Elements from the middle to a side at least, for the droplet itself."""
 FINE = 0.75
 """Part of the elements from the middle of the square to a side that lies under the foot."""
 
@@ -63,7 +65,7 @@ def whole_skin(
     if not elements:
         # physical length of the even elements, times their number
         across = wide / reach * stretch.slope
-        elements = int(np.ceil(PER_RADIUS * across / length))
+        elements = max(FEWEST, int(np.ceil(PER_RADIUS * across / length)))
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:

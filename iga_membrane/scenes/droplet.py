@@ -12,9 +12,9 @@ from ..arrays import Array
 from ..checks import choice, number, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
-from ..splines import Grading
+from ..splines import Grading, points_of
 from ..surface.ring import axisymmetric, drop_space
-from ..surface.supports import Sector, Sliding, Support
+from ..surface.supports import Fixed, Sector, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
     Centroid,
@@ -28,10 +28,10 @@ from ..terms import (
     Term,
     Volume,
 )
-from .asperities import smallest_model, whole_skin
+from .asperities import estimated_foot, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
-from .scene import Ramp, Scene
-from .start import Pancake, drop_on_sphere, least_energy_pancake
+from .scene import FreeEdge, Ramp, Scene
+from .start import STEEPEST, Pancake, drop_on_sphere, least_energy_pancake
 
 HOLDS = ("none", "x", "xy", "xyz")
 
@@ -96,14 +96,13 @@ def sessile_droplet(
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)
         terms.append(Gravity(liquid.density, (gx, gy, gz)))
-    flat_foot = isinstance(substrate, (SphereLattice, Spheres)) or substrate.contact_angle == 180.0
     law = Contact(
         substrate,
         None if penalty is None else penalty * liquid.surface_tension / length**2,
         penetration_tolerance,
     )
     parts = _Parts(substrate, asked, scale, bond, start, liquid, law)
-    built = _on_an_area(parts) if flat_foot else _on_a_line(parts)
+    built = _built(parts)
     sector = built.sector
     if isinstance(substrate, Plane):
         terms += [Centroid(axis) for axis in {"full": "xy", "half": "x"}.get(sector.model, "")]
@@ -120,7 +119,7 @@ def sessile_droplet(
         )
 
     described = _describe(substrate, volume, liquid, acceleration, hold)
-    return Scene(
+    scene = Scene(
         built.surface,
         [*terms, *built.terms],
         [*built.supports, sector],
@@ -128,7 +127,7 @@ def sessile_droplet(
         grading=built.grading,
         directions=built.directions,
         ramp=Ramp("gravity.acceleration", (0.0, pull), at)
-        if bond.any() and not flat_foot
+        if bond.any() and isinstance(substrate, (Plane, Sphere)) and not built.tangent
         else None,
         substrate=substrate,
         hold="" if hold == "none" else hold,
@@ -136,6 +135,23 @@ def sessile_droplet(
         description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=_hints(substrate, bond, sector),
     )
+    if not built.tangent:
+        return scene
+
+    def edge_at(radius: float) -> Scene:
+        return replace(scene, surface=_with_rim(built.surface, radius, scale))
+
+    def below(angle: float) -> Scene:
+        assert isinstance(substrate, Plane)
+        return sessile_droplet(
+            replace(substrate, contact_angle=angle),
+            volume=volume,
+            liquid=liquid,
+            gravity=[float(g) for g in acceleration],
+            discretization=replace(asked, model=sector.model),
+        )
+
+    return replace(scene, free_edge=FreeEdge(edge_at, _rim_radius, below))
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,6 +183,18 @@ class _Built:
     supports: Sequence[Support] = ()
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = None
+    tangent: bool = False
+
+
+def _built(parts: _Parts) -> _Built:
+    """The kind of foot that a substrate and its contact angle make."""
+    if not isinstance(parts.substrate, (Plane, Sphere)):
+        return _on_an_area(parts)
+    if parts.substrate.contact_angle < 180.0:
+        return _on_a_line(parts)
+    exact = parts.law.penalty is None and parts.start is None
+    return _on_the_plane(parts) if isinstance(parts.substrate, Plane) and exact \
+        else _on_an_area(parts)  # fmt: skip
 
 
 def _on_a_line(parts: _Parts) -> _Built:
@@ -177,6 +205,10 @@ def _on_a_line(parts: _Parts) -> _Built:
     foot = _foot(substrate, parts.liquid, scale.length, parts.down)
     bond = abs(float(parts.bond[2]))
     grading = _grading(substrate.contact_angle, bond, foot.pancake.length)
+    if parts.law.penalty is not None:
+        raise SceneError(
+            'solver.contact = "penalty": not available yet with a contact line, only at 180 degrees'
+        )
     if isinstance(parts.start, str):
         raise SceneError(f'start = "{parts.start}": only at 180 degrees; leave it out here')
     if parts.start is None:
@@ -211,14 +243,61 @@ def _on_an_area(parts: _Parts) -> _Built:
             f'planes; "{smallest}" is the smallest model here'
         )
     unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
-    skin = whole_skin(
-        parts.down, unit, local.scale, mesh.degree, max(mesh.elements, 0), parts.start
-    )
+    length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
+    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
         surface = surface.moved(parts.start.points)
     return _Built(surface, Sector(model), mesh, [parts.law], directions=skin.directions)
+
+
+COARSEST = 0.2
+"""Length over that of the drop which the mesh resolves on large spheres too."""
+
+
+FIRST = 0.75
+
+
+def _on_the_plane(parts: _Parts) -> _Built:
+    """A flat foot at 180 degrees: the liquid-gas surface alone, which leaves the plane
+    tangentially where its edge is found to be."""
+    gamma, scale, bond = parts.liquid.surface_tension, parts.scale, parts.down
+    mesh, sector = parts.asked.mesh(), _sector(parts.asked.mesh(), parts.bond)
+    if not bond > 0 or parts.bond[:2].any():
+        raise SceneError(
+            "substrate.contact_angle = 180, gravity: on a plane only gravity straight towards it "
+            "holds a droplet at 180 degrees; give such gravity or an angle < 180"
+        )
+    foot = _foot(Plane(STEEPEST), parts.liquid, scale.length, bond)
+    length = foot.pancake.length
+    rim = estimated_foot(least_energy_pancake(180.0, bond, BALL, steepest=180.0), bond, BALL)
+    # the foot bends over its own radius or the capillary length, whichever is shorter
+    first = min(3.5 / (np.sqrt(bond) * length), (4.0 * rim / length) ** 0.75)
+    grading = Grading(float(min(1.0, first)))
+    start = _start(foot, mesh, grading, scale)
+    line = PlaneContactLine(gamma, 180.0)
+    return _Built(start, sector, mesh, [line], [Fixed("xi2=0")], grading, tangent=True)
+
+
+BALL = 4.0 * np.pi / 3.0
+
+
+def _rim_radius(surface: Surface) -> float:
+    """Mean radius of the edge xi2 = 0."""
+    ring = surface.space.bases[0]
+    middle = ring.breaks[:-1] + 0.5 * ring.sizes
+    xi = np.column_stack([np.concatenate([ring.breaks[:-1], middle]), np.zeros(2 * len(middle))])
+    return float(np.linalg.norm(surface.at(xi, 1).position[:, :2], axis=1).mean())
+
+
+def _with_rim(surface: Surface, radius: float, scale: Scale) -> Surface:
+    """The same surface with another radius of its edge, the change fading towards the pole."""
+    local = surface.moved(scale.to_local(surface.points))
+    fading = points_of(surface.space, 1.0 - surface.space.abscissae[..., 1:2])
+    points = local.points.copy()
+    points[:, :2] *= 1.0 + (radius / _rim_radius(local) - 1.0) * fading
+    return surface.moved(scale.to_world(points))
 
 
 def _acceleration(gravity: Any) -> Array:

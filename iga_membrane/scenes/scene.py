@@ -14,7 +14,7 @@ from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading
 from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
-from ..terms import BodyTerm, Centroid, Constraint, Scale, SurfaceTension, Term
+from ..terms import BodyTerm, Centroid, Constraint, Contact, LineTerm, Scale, SurfaceTension, Term
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,24 @@ class Ramp:
 
 
 @dataclass(frozen=True)
+class FreeEdge:
+    """An edge at 180 degrees: the membrane leaves a smooth solid tangentially, at a place to be
+    found.
+
+    Attributes
+    ----------
+    scene_at : coordinate of the edge on the solid, a radius or an angle, to a scene whose edge is
+        fixed there.
+    place_of : the coordinate of a surface's edge, in the scene's scale.
+    nearby : contact angle below 180 degrees to a scene of the same space with a contact line.
+    """
+
+    scene_at: Callable[[float], Scene] = field(repr=False)
+    place_of: Callable[[Surface], float] = field(repr=False)
+    nearby: Callable[[float], Scene] = field(repr=False)
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything a solve needs to know.
 
@@ -62,6 +80,7 @@ class Scene:
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
     ramp : the way to this scene if a direct solve fails.
+    free_edge : the way to find a fixed edge's place at 180 degrees.
     substrate : the solid that the membrane touches, for its kind, forces and pictures.
     hold : axes along which the user asked for the centroid to be held.
     particle_pull : acceleration along -z that weighs a particle and the liquid on it.
@@ -78,6 +97,7 @@ class Scene:
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
     ramp: Ramp | None = field(default=None, repr=False)
+    free_edge: FreeEdge | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
     hold: str = ""
     particle_pull: float = 0.0
@@ -99,6 +119,14 @@ class Scene:
                 raise SceneError(f'terms: "{name}" is listed {names.count(name)} times')
         if "pressure" in names and "volume" in names:
             raise SceneError("terms: pressure and volume are both prescribed; give one of them")
+        sliding = [s.edge for s in self.supports if isinstance(s, Sliding)]
+        for term in self.terms:
+            if isinstance(term, LineTerm) and term.edge in sliding and term.strength >= term.gamma:
+                raise SceneError(
+                    "contact_angle = 180: a contact line that slides freely has no place at 180 "
+                    "degrees, where the foot is a contact area; build the scene by "
+                    "sessile_droplet or liquid_sheet, or hold the edge by Fixed"
+                )
         if "surface_tension" not in names:
             raise SceneError("terms: a membrane needs a SurfaceTension")
         if self.scale is None:
@@ -153,9 +181,10 @@ class Scene:
 
     @property
     def meridian_grading(self) -> Grading | None:
-        """The grading of a ring patch; other patches, and membranes whose control points move in
-        given directions, keep their parametrization."""
-        regular = self.surface.space.bases[0].periodic and self.directions is None
+        """The grading of a ring patch; other patches, and membranes that lie on a solid, keep
+        their parametrization."""
+        lying = any(isinstance(t, Contact) for t in self.terms)
+        regular = self.surface.space.bases[0].periodic and not lying
         return self.grading if regular else None
 
     @property

@@ -16,7 +16,9 @@ import numpy as np
 
 from ..checks import choice, integer, number, suggestion, vector
 from ..errors import SceneError
-from ..solids import Plane, Sphere
+from ..solids import Plane, Sphere, SphereLattice, Spheres
+from .asperities import STARTS
+from .cell import asperity_cell
 from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
 from .liquid import MODELS, Discretization, Liquid
@@ -201,6 +203,43 @@ def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any
     return changed
 
 
+def _contact(table: Mapping[str, Any]) -> dict[str, Any]:
+    """How contact areas are held, by the names of the scenes."""
+    law: dict[str, Any] = {}
+    if table.get("contact", "exact") == "penalty":
+        law["penalty"] = table.get("penalty", 1e4)
+    if "penetration_tolerance" in table:
+        law["penetration_tolerance"] = table["penetration_tolerance"]
+    return law
+
+
+def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
+    liquid, cell, substrate = tables["liquid"], tables["cell"], tables["substrate"]
+    for field, table in (("cell.size", cell), ("cell.pressure", cell),
+                         ("substrate.contact_angle", substrate)):  # fmt: skip
+        if field.rpartition(".")[2] not in table:
+            raise SceneError(f"{field}: missing; an asperity cell needs it")
+    solid = _substrate(dict(substrate) | {"kind": substrate.get("kind", "sphere")})
+    if isinstance(solid, Spheres) and len(solid.centers) == 1 and solid.base is None:
+        x, y, z = (float(c) for c in solid.centers[0])
+        angle, radius = float(np.ravel(solid.contact_angle)[0]), float(np.ravel(solid.radii)[0])
+        solid = Sphere(angle, radius, (x, y, z))
+    if not isinstance(solid, Sphere):
+        raise SceneError(
+            f'substrate.kind = "{substrate["kind"]}": a cell holds one sphere, "sphere" or '
+            '"spheres" with one centre, without a base'
+        )
+    return asperity_cell(
+        solid,
+        size=cell["size"],
+        pressure=cell["pressure"],
+        shape=cell.get("shape", "square"),
+        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
+        discretization=Discretization(**tables["discretization"]),
+        **_contact(tables["solver"]),
+    )
+
+
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     if data.get("particle"):
         raise _later("[[particle]]")
@@ -215,11 +254,21 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
         gravity=_gravity(tables["gravity"]),
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
+        start=_start(tables["solver"]),
+        **_contact(tables["solver"]),
     )
 
 
-def _substrate(table: Mapping[str, Any]) -> Plane | Sphere:
-    """The solid under a droplet; a sphere has its top at the origin."""
+def _start(table: Mapping[str, Any]) -> str | None:
+    start = table.get("start", "auto")
+    if start.endswith(".npz"):
+        raise _later("solver.start from a state file")
+    choice("solver.start", start, ("auto", *STARTS))
+    return None if start == "auto" else str(start)
+
+
+def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Spheres:
+    """The solid under a droplet; a sphere or a lattice has its tops at z = 0."""
     kind = choice("substrate.kind", table.get("kind", "plane"), SUBSTRATES)
     if kind not in _SUBSTRATE_KEYS:
         raise _later(f'substrate.kind = "{kind}"')
@@ -230,14 +279,48 @@ def _substrate(table: Mapping[str, Any]) -> Plane | Sphere:
                 f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
                 f"it or choose another substrate.kind ({', '.join(SUBSTRATES)})"
             )
+    angle = table["contact_angle"]
+    for key in _NEEDED[kind]:
+        if key not in table:
+            raise SceneError(f"substrate.{key}: missing; a {kind} needs it")
+    if isinstance(angle, list) and kind != "spheres":
+        raise SceneError(f"substrate.contact_angle = {angle}: one number is needed here")
     if kind == "plane":
-        return Plane(table["contact_angle"])
-    if "radius" not in table:
-        raise SceneError("substrate.radius: missing; a sphere needs it")
-    return Sphere(table["contact_angle"], table["radius"], (0.0, 0.0, -table["radius"]))
+        return Plane(angle)
+    if kind == "sphere":
+        x, y = _offset(table)
+        return Sphere(angle, table["radius"], (x, y, -table["radius"]))
+    if kind == "sphere_lattice":
+        return SphereLattice(
+            angle,
+            table["radius"],
+            table["spacing"],
+            table.get("arrangement", "square"),
+            _offset(table),
+            table.get("base"),
+        )
+    return Spheres(angle, table["centers"], table["radii"], table.get("base"))
 
 
-_SUBSTRATE_KEYS = {"plane": ("contact_angle",), "sphere": ("contact_angle", "radius")}
+def _offset(table: Mapping[str, Any]) -> tuple[float, float]:
+    offset = table.get("offset", [0.0, 0.0])
+    if not isinstance(offset, list) or len(offset) != 2:
+        raise SceneError(f"substrate.offset = {offset!r}: two numbers [dx, dy] are needed")
+    return float(offset[0]), float(offset[1])
+
+
+_SUBSTRATE_KEYS = {
+    "plane": ("contact_angle",),
+    "sphere": ("contact_angle", "radius", "offset"),
+    "sphere_lattice": ("contact_angle", "radius", "spacing", "arrangement", "offset", "base"),
+    "spheres": ("contact_angle", "centers", "radii", "base"),
+}
+_NEEDED = {
+    "plane": (),
+    "sphere": ("radius",),
+    "sphere_lattice": ("radius", "spacing"),
+    "spheres": ("centers", "radii"),
+}
 
 
 def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
@@ -292,11 +375,13 @@ def _particle(given: Mapping[str, Any]) -> Sphere:
 
 _READERS: dict[str, Callable[[Mapping[str, Any], Tables], Scene]] = {
     "sessile_droplet": _droplet,
+    "asperity_cell": _cell,
     "film_between_rings": _film,
     "liquid_sheet": _sheet,
 }
 _FOREIGN = {
     "sessile_droplet": ("sheet", "cell", "rings"),
+    "asperity_cell": ("gravity", "particle", "droplet", "sheet", "rings"),
     "film_between_rings": ("gravity", "substrate", "particle", "droplet", "sheet", "cell"),
     "liquid_sheet": ("substrate", "droplet", "cell", "rings"),
 }
@@ -315,7 +400,7 @@ def _gravity(table: Mapping[str, Any]) -> list[float]:
 
 
 def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
-    built = {"motion": "spines", "contact": "exact", "start": "auto"}
+    built = {"motion": "spines"}
     words = {
         "motion": ("spines", "cartesian"),
         "contact": ("exact", "penalty"),

@@ -5,12 +5,13 @@ The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, line_angle, number
+from ..checks import choice, number
 from ..errors import SceneError
 from ..solids import Sphere
 from ..splines import Grading, Space, points_of
@@ -27,7 +28,7 @@ from ..surface.supports import Fixed, Sector, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension, Term, Volume
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
-from .scene import Ramp, Scene
+from .scene import FreeEdge, Ramp, Scene
 
 BOUNDARIES = ("square", "circle")
 
@@ -73,15 +74,20 @@ def liquid_sheet(
         raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
     sector = _sector(mesh, particle)
     gamma = liquid.surface_tension
+    tangent = particle is not None and particle.contact_angle == 180.0
+    if tangent and (boundary == "square" or (sector.model in ("full", "half") and not mesh.model)):
+        raise SceneError(
+            "particle.contact_angle = 180: not available yet with a square rim or off the axis"
+        )
     terms: list[Term] = [SurfaceTension(gamma)]
     supports: list[Support] = [sector]
     if particle is None:
         supports += [Fixed(edge) for edge in _rim_edges(boundary)]
     else:
-        line_angle("particle.contact_angle", particle.contact_angle)
         _check_place(particle, size, boundary)
         terms.append(SphereContactLine(gamma, particle))
-        supports += [Sliding("xi2=0", particle), Fixed("xi2=1")]
+        edge = Fixed("xi2=0") if tangent else Sliding("xi2=0", particle)
+        supports += [edge, Fixed("xi2=1")]
     if volume is not None:
         # a sheet's volume is signed, so the constraint's positive scale is the rim's own
         whole = np.pi * (0.5 * size) ** 3
@@ -116,7 +122,7 @@ def liquid_sheet(
             def at_angle(angle: float) -> Scene:
                 return again(particle=Sphere(angle, own.radius, own.center, own.density))
 
-            if particle.contact_angle != EASY:
+            if particle.contact_angle != EASY and not tangent:
                 values = (EASY, particle.contact_angle)
                 ramp = Ramp("particle[0].contact_angle", values, at_angle)
         elif pressure:
@@ -127,7 +133,7 @@ def liquid_sheet(
         surface = start
         _check_start(start, _space(particle, boundary, mesh))
     length = 0.5 * size if particle is None else particle.radius
-    return Scene(
+    scene = Scene(
         surface,
         terms,
         supports,
@@ -142,6 +148,42 @@ def liquid_sheet(
             particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
         ),
     )
+    if particle is None or not tangent:
+        return scene
+    ball = Scale(particle.radius).local_sphere(particle)
+
+    def edge_at(polar: float) -> Scene:
+        return replace(scene, surface=_with_edge(surface, particle, polar))
+
+    return replace(
+        scene,
+        free_edge=FreeEdge(
+            edge_at,
+            lambda at: _edge_polar(at, ball),
+            lambda angle: again(
+                particle=Sphere(angle, particle.radius, particle.center, particle.density)
+            ),
+        ),
+    )
+
+
+def _edge_polar(surface: Surface, ball: Sphere) -> float:
+    """Mean polar angle of the edge xi2 = 0 about a sphere."""
+    ring = surface.space.bases[0]
+    middle = ring.breaks[:-1] + 0.5 * ring.sizes
+    xi = np.column_stack([np.concatenate([ring.breaks[:-1], middle]), np.zeros(2 * len(middle))])
+    x = surface.at(xi, 1).position - np.array(ball.center)
+    return float(np.arctan2(np.hypot(x[:, 0], x[:, 1]), x[:, 2]).mean())
+
+
+def _with_edge(surface: Surface, particle: Sphere, polar: float) -> Surface:
+    """The same sheet with its edge on another circle of the sphere, the change fading outwards."""
+    space, r = surface.space, particle.radius
+    ring = circle(space.bases[0])
+    inner = np.array(particle.center) + r * (np.sin(polar) * ring + [0.0, 0.0, np.cos(polar)])
+    shift = inner - surface.net[:, 0]
+    fading = 1.0 - space.bases[1].abscissae[:, None]
+    return surface.moved(surface.points + points_of(space, shift[:, None] * fading))
 
 
 EASY = 90.0
@@ -192,10 +234,10 @@ def _start(
     curvature: float,
     volume: float | None,
 ) -> Surface:
-    """A cone on the particle, a spherical cap in the circle, a bulge in the square."""
+    """A funnel on the particle, a spherical cap in the circle, a bulge in the square."""
     space, half = _space(particle, boundary, mesh), 0.5 * size
     if particle is not None:
-        return _cone(space, particle, half, boundary)
+        return _funnel(space, particle, half, boundary, curvature)
     if boundary == "circle":
         depth = _cap_depth(curvature * half, None if volume is None else volume / half**3)
         return _cap(space, half, half * depth)
@@ -207,24 +249,33 @@ def _start(
     return Surface(space, net.reshape(-1, 3))
 
 
-def _cone(space: Space, particle: Sphere, half: float, boundary: str) -> Surface:
-    """Straight lines from the circle where they meet the sphere at Young's angle to the rim."""
+def _funnel(
+    space: Space, particle: Sphere, half: float, boundary: str, curvature: float
+) -> Surface:
+    """The sheet of small slopes, ``z = z_a + B log(r / a) + p (r^2 - a^2) / 4 gamma``, from the
+    circle where it meets the sphere at Young's angle to the rim."""
     r, (x, y, z) = particle.radius, particle.center
-    rim = (half - max(abs(x), abs(y))) / r
+    rim, quarter = (half - max(abs(x), abs(y))) / r, 0.25 * curvature * r
     polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
     polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
-    depth = z / r + np.cos(polar)
-    slope = np.arctan2(-depth, rim - np.sin(polar))
+    a, depth = np.sin(polar), z / r + np.cos(polar)
+    log = -(depth + quarter * (rim**2 - a**2)) / np.log(rim / a)
+    slope = np.arctan(log / a + 2.0 * quarter * a)
     excess = np.pi - np.radians(particle.contact_angle) - polar - slope
     falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
     # the last crossing is the stable one; without any, the nearest to one
     k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
-    a, ring = np.sin(polar[k]), circle(space.bases[0])
+    ring = circle(space.bases[0])
     outer = half * ring if boundary == "circle" else half * square(space.bases[0])
-    inner = np.array([x, y, r * depth[k]]) + r * a * ring
+    inner = np.array([x, y, 0.0]) + r * a[k] * ring
     points, matrix = meridian_interpolation(space)
-    first, second = np.linalg.solve(matrix, np.stack([1.0 - points, points], axis=1)).T[:, :, None]
-    return Surface(space, points_of(space, inner[:, None] * first + outer[:, None] * second))
+    at = a[k] + (rim - a[k]) * points
+    sag = r * (depth[k] + log[k] * np.log(at / a[k]) + quarter * (at**2 - a[k] ** 2))
+    values = np.stack([1.0 - points, points, sag], axis=1)
+    first, second, height = np.linalg.solve(matrix, values).T[:, :, None]
+    up = np.array([0.0, 0.0, 1.0])
+    net = inner[:, None] * first + outer[:, None] * second + height * up
+    return Surface(space, points_of(space, net))
 
 
 def _grading(surface: Surface, size: float) -> Grading:

@@ -183,6 +183,11 @@ class Assembly:
         moved = np.linalg.norm(displacement[functions], axis=-1)
         return float(moved.max(initial=0.0)) / self.contact.length
 
+    @property
+    def rounds(self) -> int:
+        """How often the multipliers of contact have been updated."""
+        return 0 if self.contact is None else self.contact.rounds
+
     def settled(self, surface: Surface, near: float) -> bool:
         """Whether the multipliers of contact hold the gap; they are updated when the last step
         ``near`` the solid (over the contact length) is small against what the contact still gives.
@@ -207,6 +212,9 @@ class Assembly:
         at = vary.element_points(self.table, points)
         forces = vary.forces(self.table, at, self.tension, body)
         total = float((forces * displacement[self.table.functions]).sum())
+        if self.contact is not None:
+            push = self.contact.forces(self.contact.touch(points))
+            total += float((push * displacement[self.contact.table.functions]).sum())
         for term, edge in self.lines:
             forces = term.forces(edge, points, term.strength, body)
             total += float((forces * displacement[edge.functions]).sum())
@@ -224,6 +232,12 @@ class Assembly:
             push = gap.gradients(edge, surface.points).sum(axis=2)
             total -= np.einsum("ek,eki->i", loads[edge.functions], push)
         return total
+
+    def contact_force(self, surface: Surface) -> Array:
+        """(3,) force of the membrane on the solid it lies on (one sector)."""
+        if self.contact is None:
+            return np.zeros(3)
+        return self.contact.forces(self.contact.touch(surface.points)).sum(axis=(0, 1))
 
     def whole(self, vector: Array) -> Array:
         """(3,) sum over all sectors of a vector integrated over one."""

@@ -20,15 +20,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index
-from ..solids import Nearest, Solid
+from ..solids import Nearest, Plane, Solid
 from ..splines import Space, Table
 
 SOFT = 0.025
 """First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
 HARDER = 0.03
 """Factor of one tightening."""
-HARD = 0.03
-"""Last ``delta`` over the first."""
+HARD = 0.01
+"""Last ``delta`` over the area of the element: a tenth of what the membrane itself gives on the
+scale of an element, so that the multipliers of its shortest waves settle too."""
 SAMPLES = 12
 """Points along an element at which the membrane's depth is sampled."""
 LIFTS = 10
@@ -68,7 +69,7 @@ class ContactSet:
     length : contact length: the smallest radius, 1 for a plane.
     elements : (elements,) of the space.
     multipliers : (elements, points) tractions, >= 0.
-    settled : whether the multipliers hold the gap.
+    settled : whether the multipliers hold the gap; rounds : their updates so far.
     """
 
     def __init__(
@@ -89,12 +90,17 @@ class ContactSet:
         self.length = solid.scale
         self.exact = penalty is None
         self.multipliers: Array = np.zeros(area.shape)
-        self._soft = SOFT * self.length**2
-        self.delta = self._soft if penalty is None else 1.0 / penalty
+        self._hard = HARD * area.sum(axis=1, keepdims=True)
+        self._soft = np.maximum(SOFT * self.length**2, self._hard)
+        if isinstance(solid, Plane):
+            self._soft = self._hard / HARDER  # a plane has no length; the start lies on it
+        self.delta: Array = self._soft if penalty is None else np.array(1.0 / penalty)
         self.settled = not self.exact
+        self.rounds = 0
 
     def begin(self) -> None:
         """Soft again and without lifts, from the multipliers at hand."""
+        self.rounds = 0
         if self.exact:
             self.delta, self.settled = self._soft, False
             self._lift[:], self._lifts = 0.0, LIFTS
@@ -108,7 +114,7 @@ class ContactSet:
     def energy(self, touch: Touch) -> float:
         """Energy of the penalty or of the augmented Lagrangian."""
         square = touch.traction**2 - self.multipliers**2
-        return float(0.5 * self.delta * (square * self.area).sum())
+        return float(0.5 * (self.delta * square * self.area).sum())
 
     def forces(self, touch: Touch) -> Array:
         """(elements, local, 3) derivative of the energy by local control points."""
@@ -121,7 +127,8 @@ class ContactSet:
         rows, at = self.table.values[near], touch.at
         d = directions[self.table.functions[near]]
         bent = self.area[near] * touch.traction[near] * at.bend[near]
-        stiff = self.area[near] * (touch.traction[near] > 0) / self.delta
+        soft = np.broadcast_to(self.delta, self.area.shape)[near]
+        stiff = self.area[near] * (touch.traction[near] > 0) / soft
         u = rows * (at.normal[near] @ d.transpose(0, 2, 1))
         blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
         blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))
@@ -129,17 +136,18 @@ class ContactSet:
 
     def give(self, touch: Touch) -> float:
         """Depth by which the stiffest contact would give way without multipliers."""
-        return float(self.delta * touch.traction.max(initial=0.0))
+        return float((self.delta * touch.traction).max(initial=0.0))
 
     def tighten(self, touch: Touch, points: Array) -> None:
         """Take the tractions as multipliers and reduce ``delta``; lift points that dip too deep."""
         if not self.exact:
             return
-        change = self.delta * np.abs(touch.traction - self.multipliers).max(initial=0.0)
-        self.settled = change <= SETTLED * self.length
+        self.rounds += 1
+        change = self.delta * np.abs(touch.traction - self.multipliers)
+        self.settled = bool(change.max(initial=0.0) <= SETTLED * self.length)
         self.multipliers = touch.traction
-        hard = self.delta <= HARD * self._soft
-        self.delta = max(HARDER * self.delta, HARD * self._soft)
+        hard = bool((self.delta <= self._hard).all())
+        self.delta = np.maximum(HARDER * self.delta, self._hard)
         if hard and self._lifts:
             self.settled &= not self._lift_points(touch, points)
 

@@ -105,12 +105,13 @@ def _on_an_area(
 ) -> dict[str, float]:
     """A drop whose foot is a contact area: the membrane is its whole skin."""
     scale, found = scene.units, footing(scene, assembly, surface, body)
-    wet = float(found.areas.sum()) * scale.length**2
+    lying = float(found.areas.sum()) * scale.length**2
+    known = values["A_wet"]  # the middle of a foot that the membrane leaves out
     top = _farthest(surface, lambda x: x[..., 2])
-    foot = float(np.sqrt(base_area(scene, found) / np.pi))
+    foot = float(np.sqrt((base_area(scene, found) + known / scale.length**2) / np.pi))
     return {
-        "A_LG": values["A_LG"] - wet,
-        "A_wet": wet,
+        "A_LG": values["A_LG"] - lying,
+        "A_wet": lying + known,
         "height": float(top[2]) * scale.length,
         "equator_radius": _width(surface) * scale.length,
         "p_apex": -(body.constant + float(np.dot(body.gradient, top))) * scale.pressure,

@@ -21,12 +21,16 @@ from .assembly import Assembly, System
 from .linear import Bordered, SingularMatrix
 from .status import Status
 
+NEAR = 1e-3
+"""Relative residual below which an unstable equilibrium is approached, not fled."""
 POLISHES = 2
 """Walks by arc length after the steps have become small; each costs one or two iterations."""
 POLISHED = 1e-6
 """Distortion that a last walk leaves alone."""
 DISTORTED = 0.2
 """Distortion that is mended at once, also while steps are large."""
+ROUNDS = 30
+"""Updates of the multipliers of contact at most."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -37,7 +41,7 @@ class NewtonOptions:
 
     Attributes
     ----------
-    max_iterations : of one solve at one load.
+    max_iterations : of one solve at one load, and with one set of multipliers of contact.
     tolerance : the last step's largest displacement.
     step_limit : largest displacement of a control point in one step.
     polish_below : steps smaller than this are followed by a last walk by arc length.
@@ -49,7 +53,7 @@ class NewtonOptions:
     tolerance: float = 1e-8
     step_limit: float = 0.25
     polish_below: float = 1e-3
-    near: float = 1e-3
+    near: float = NEAR
     deadline: float = float("inf")
 
 
@@ -134,7 +138,9 @@ def _iterate(
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
     flee, approached = False, None
-    for _ in range(options.max_iterations):
+    left, rounds = options.max_iterations, 0
+    while left and rounds < ROUNDS:
+        left -= 1
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
         motion = assembly.spines.on(result.surface)
@@ -160,9 +166,9 @@ def _iterate(
             longest = min(longest, 0.5 / near)
         taken, moved = _search(assembly, system, result.surface, displacement, direction, longest)
         result.iterations.append(Iteration(residual, size, taken, direction.shift))
+        if moved is None and residual <= ROUNDING:
+            return
         if moved is None:
-            if residual <= ROUNDING:
-                return
             raise _Stop(
                 Status.STALLED,
                 f"no step along the Newton direction lowers the energy (relative residual "
@@ -174,6 +180,9 @@ def _iterate(
         )
         full = taken == 1.0 and not direction.shift
         if full and not assembly.settled(result.surface, near):
+            if assembly.rounds > rounds:
+                # other multipliers of contact are another problem
+                left, rounds = options.max_iterations, assembly.rounds
             continue
         if full and (size <= options.tolerance or (residual <= 1e-12 and size <= 1e-6)):
             return  # converged, or at the rounding floor of an ill-conditioned state

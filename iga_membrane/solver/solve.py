@@ -10,12 +10,16 @@ from typing import Literal
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
+from ..surface.surface import Surface
+from ..terms import BodyDensity
 from .assembly import Assembly
 from .conclude import Outcome, conclude
+from .free_edge import tangent_edge
 from .load_stepping import LoadStep, load_stepping
-from .newton import NewtonOptions, newton
+from .newton import NEAR, NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
 from .solution import Solution
 from .status import Status
@@ -58,12 +62,65 @@ def solve(
         return _delivered(replace(solution, scene=scene), on_fail)
     assembly = Assembly(scene, options.quadrature)
     settings = NewtonOptions(
-        options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
+        options.max_iterations,
+        options.tolerance,
+        # a droplet on asperities may roll to a place where it is stable
+        near=0.0 if assembly.contact is not None else NEAR,
+        deadline=started + options.max_cpu_s,
     )
     outcome = _iterate(scene, assembly, settings, options, report)
     assembly.load(outcome.scene)
     solution = conclude(outcome, assembly, options, started)
+    if solution.status is Status.UNDERRESOLVED and len(outcome.steps) == 1 and scene.ramp:
+        # a mesh may fake an equilibrium where there is none; the way to the scene tells
+        path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
+        if path.bracket is not None:
+            assembly.load(path.scene)
+            steps = [*outcome.steps, *path.steps]
+            outcome = Outcome(path.scene, path.result, steps, path.bracket)
+            solution = conclude(outcome, assembly, options, started)
     return _delivered(replace(solution, scene=scene), on_fail)
+
+
+DRIFTS = 8
+"""New starts at most for a droplet that rolls to a place where it is stable."""
+
+
+def _follow_drift(
+    scene: Scene,
+    assembly: Assembly,
+    start: Surface,
+    result: NewtonResult,
+    settings: NewtonOptions,
+) -> NewtonResult:
+    """A droplet on asperities without mirror planes rolls sideways, which its given directions
+    follow only so far: start anew where it has rolled to."""
+    moved = np.zeros(3)
+    for _ in range(DRIFTS):
+        if result.status in (None, Status.INTERRUPTED) or "xy" in scene.sector.mirrored:
+            break
+        place = _centroid(scene, assembly, result.surface)
+        drift = place - _centroid(scene, assembly, start.moved(start.points + moved))
+        log.info("the droplet has rolled by %.3g, %.3g: new start", drift[0], drift[1])
+        moved = moved + drift
+        iterations, seconds = result.iterations, result.linear_seconds
+        assert assembly.contact is not None
+        assembly.contact.multipliers[:] = 0.0
+        result = newton(assembly, start.moved(start.points + moved), None, None, settings)
+        result.iterations = iterations + result.iterations
+        result.linear_seconds += seconds
+    return result
+
+
+def _centroid(scene: Scene, assembly: Assembly, surface: Surface) -> Array:
+    """(3,) of the liquid, along the axes that its model leaves free; height left out."""
+    inside = assembly.body_integral(surface, BodyDensity(1.0))
+    place = np.zeros(3)
+    for k, axis in enumerate("xy"):
+        if axis not in scene.sector.mirrored:
+            along = BodyDensity(0.0, tuple(float(k == i) for i in range(3)))  # type: ignore[arg-type]
+            place[k] = assembly.body_integral(surface, along) / inside
+    return place
 
 
 def _delivered(solution: Solution, on_fail: str) -> Solution:
@@ -97,8 +154,18 @@ def _iterate(
 ) -> Outcome:
     """Direct Newton; load stepping where it failed or ended on a saddle; at last the nearest
     equilibrium of any kind, to tell an unstable state from none."""
+    if scene.free_edge is not None:
+
+        def find(near: Scene) -> NewtonResult:
+            lines = Assembly(near, options.quadrature)
+            return _iterate(near, lines, settings, options, report).result
+
+        found, state = tangent_edge(scene.free_edge, assembly, settings, find)
+        return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
     start, grading = scene.local_surface(), scene.meridian_grading
     direct = newton(assembly, start, None, grading, settings)
+    if assembly.contact is not None and scene.kind == "sessile_droplet":
+        direct = _follow_drift(scene, assembly, start, direct, settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
     if direct.status is Status.INTERRUPTED or (direct.status is None and direct.index <= 0):
         return Outcome(scene, direct, steps)
@@ -114,7 +181,7 @@ def _iterate(
         outcome = Outcome(scene, direct, steps)
         if partial:
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
-    if direct.status is not None and outcome.bracket is None:
+    if direct.status is not None and outcome.bracket is None and assembly.contact is None:
         assembly.load(scene)
         nearest = newton(assembly, start, None, grading, replace(settings, near=np.inf))
         steps = [*steps, LoadStep(1.0, len(nearest.iterations), nearest.status)]

@@ -33,6 +33,7 @@ def ring_space(
     *,
     angle: float = 0.5 * np.pi,
     corners: bool = False,
+    around: int | None = None,
 ) -> Space:
     """Open ring patch.
 
@@ -44,8 +45,11 @@ def ring_space(
     angle : "nurbs": opening (radians) of the arc that the weights make exact along the meridian.
     corners : four patches that meet on the diagonals with continuity 0, for a square rim; each
         eighth of the ring then has ``elements`` elements.
+    around : elements round the ring, instead.
     """
-    around = 8 * elements if corners else sectors * max(1, -(-2 * elements // sectors))
+    if around is None:
+        around = 8 * elements if corners else 2 * elements
+    around = sectors * max(1, -(-around // sectors))
     polynomial = "lagrange" if kind == "lagrange" else "bspline"
     if polynomial == "bspline":
         around = max(around, sectors * -(-(degree + 1) // sectors))
@@ -59,13 +63,19 @@ def ring_space(
 
 
 def drop_space(
-    kind: str, degree: int, elements: int, sectors: int = 8, *, angle: float = 0.5 * np.pi
+    kind: str,
+    degree: int,
+    elements: int,
+    sectors: int = 8,
+    *,
+    angle: float = 0.5 * np.pi,
+    around: int | None = None,
 ) -> Space:
     """Ring patch closed by a pole: ``xi2`` runs from the rim (0) to the pole (1).
 
     Parameters are those of :func:`ring_space`.
     """
-    return close_pole(ring_space(kind, degree, elements, sectors, angle=angle))
+    return close_pole(ring_space(kind, degree, elements, sectors, angle=angle, around=around))
 
 
 def arc_weights(meridian: Basis, angle: float) -> Array:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, line_angle, number
+from ..checks import choice, contact_angle, number
 from ..splines import EdgeTable
 from .term import LINE_EDGES, BodyDensity, LineTerm, Scale
 
@@ -37,7 +37,7 @@ class PlaneContactLine(LineTerm):
 
     def __post_init__(self) -> None:
         number("liquid.surface_tension", self.gamma, above=0.0)
-        line_angle("substrate.contact_angle", self.contact_angle)
+        contact_angle("substrate.contact_angle", self.contact_angle)
         choice("edge", self.edge, LINE_EDGES)
 
     @property

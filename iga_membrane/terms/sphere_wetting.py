@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, line_angle, number
+from ..checks import choice, number
 from ..errors import GeometryError
 from ..solids.sphere import Sphere
 from ..splines import EdgeTable
@@ -40,7 +40,6 @@ class SphereContactLine(LineTerm):
 
     def __post_init__(self) -> None:
         number("liquid.surface_tension", self.gamma, above=0.0)
-        line_angle("contact_angle", self.sphere.contact_angle)
         choice("edge", self.edge, LINE_EDGES)
 
     @property

@@ -111,10 +111,11 @@ def test_numbers_beyond_floats_are_refused():
             iga.sessile_droplet(iga.Plane(contact_angle=90), volume=volume)
 
 
-@pytest.mark.parametrize("angle", [180.0])
-def test_no_contact_line_at_180_degrees_however_composed(angle):
-    with pytest.raises(iga.SceneError, match="not available yet"):
-        iga.PlaneContactLine(1.0, angle)
+def test_no_sliding_line_at_180_degrees_however_composed():
+    drop = iga.sessile_droplet(iga.Plane(contact_angle=120), volume=1.0).surface
+    terms = [iga.SurfaceTension(1.0), iga.Volume(1.0), iga.PlaneContactLine(1.0, 180.0)]
+    with pytest.raises(iga.SceneError, match="a contact line that slides freely"):
+        iga.Scene(drop, terms, [iga.Sliding("xi2=0")])
 
 
 @pytest.mark.parametrize(
@@ -144,8 +145,10 @@ def test_a_spline_surface_with_a_kink_is_refused():
 @pytest.mark.parametrize("name", ["residual", "volume", "force", "line", "angle", "penetration"])
 def test_every_objection_of_the_audit_counts(name):
     clean = dict.fromkeys(("residual", "volume", "force", "line", "angle", "penetration"), 0.0)
-    assert _defect(Audit(**clean), curved=False) is None
-    status, message = _defect(Audit(**clean | {name: 1.1 * getattr(TOLERANCE, name)}), False)
+    assert _defect(Audit(**clean), TOLERANCE.penetration) is None
+    status, message = _defect(
+        Audit(**clean | {name: 1.1 * getattr(TOLERANCE, name)}), TOLERANCE.penetration
+    )
     named = iga.Status.PENETRATION if name == "penetration" else iga.Status.UNDERRESOLVED
     assert status is named
     assert message
@@ -153,7 +156,7 @@ def test_every_objection_of_the_audit_counts(name):
 
 def test_a_membrane_through_a_sphere_is_penetration():
     deep = Audit(residual=0.0, penetration=1.1 * TOLERANCE.indentation)
-    assert _defect(deep, curved=True)[0] is iga.Status.PENETRATION
+    assert _defect(deep, TOLERANCE.indentation)[0] is iga.Status.PENETRATION
 
 
 def test_the_audit_sees_a_membrane_inside_its_sphere():

@@ -135,17 +135,18 @@ def test_misspelt_keys_are_refused(path, said):
 @pytest.mark.parametrize(
     ("path", "value", "said"),
     [
-        ("substrate.kind", "spheres", 'substrate.kind = "spheres": not available yet'),
+        ("substrate.kind", "spheres", "substrate.centers: missing"),
+        ("substrate.kind", "none", 'substrate.kind = "none": not available yet'),
         ("substrate.kind", "sphere", "substrate.radius: missing"),
-        ("scene", "asperity_cell", 'scene = "asperity_cell": not available yet'),
+        ("scene", "asperity_cell", "gravity: does not belong"),
         ("scene", "liquid_sheet", "substrate: does not belong"),
         ("particle", [{"radius": 1.0}], "[[particle]]: not available yet"),
         ("solver.contact", "penalty", "not available yet"),
         ("solver.contact_line", "trimmed", "not available yet"),
-        ("solver.start", "flat", "not available yet"),
+        ("solver.start", "flat", "only at 180 degrees"),
+        ("solver.start", "state.npz", "not available yet"),
         ("substrate.base", -0.1, "a plane has no such field"),
         ("sheet", {"size": 5.0}, "does not belong"),
-        ("substrate.contact_angle", 180.0, "not available yet"),
     ],
 )
 def test_what_is_not_built_or_does_not_belong_is_refused_by_name(path, value, said):

@@ -148,7 +148,7 @@ def test_gradient_agrees_with_the_complex_step(scene):
     points = surface.points + 1j * h * motion.displacement(direction)
     at = vary.element_points(assembly.table, points)
     area, bodies = vary.energies(assembly.table, at, [assembly.density(multipliers)])
-    total = assembly._tension * area + bodies[0]
+    total = assembly.tension * area + bodies[0]
     body = assembly.density(multipliers)
     lines = (term.energy(edge, points, term.strength, body) for term, edge in assembly.lines)
     total = total + sum(lines)

@@ -122,7 +122,7 @@ def test_a_sweep_of_the_angle_comes_back_where_it_started():
     ("change", "said"),
     [
         ({"center": [2.6, 0, -1]}, "must lie inside the rim"),
-        ({"contact_angle": 180.0}, "not available yet"),
+        ({"contact_angle": 180.0, "boundary": "square"}, "not available yet"),
         ({"motion": "vertical"}, "not available yet"),
         ({"pressure": 0.1, "volume": 1.0}, "both are prescribed"),
         ({"radius": -1.0}, "radius must be > 0"),
