@@ -6,6 +6,7 @@ origin. On the mirror planes the membrane is horizontal.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,11 +26,9 @@ from .liquid import MODELS, Discretization, Liquid, Mesh
 from .scene import Ramp, Scene
 
 SHAPES = ("square", "circle")
-SUNK = 0.05
+SUNK = 0.01
 """Depth of the start in the sphere over its radius: contact holds it from the first step."""
-FINE = 0.8
-"""Part of the elements from the middle to a side that lies over the sphere."""
-PER_RADIUS = 12
+PER_RADIUS = 16
 """Elements along the sphere's radius, by default."""
 
 
@@ -86,7 +85,12 @@ def asperity_cell(
             f'discretization.model = "{model}": the sphere stands at x, y = {x:g}, {y:g}; '
             f'"{smallest}" is the smallest model here'
         )
-    surface = _flat(shape, size, reach + 1.1 * r, z + (1.0 - SUNK) * r, mesh)
+    unit = (x / r, y / r, z / r)
+    local, directions = _start(shape, size / r, unit, pressure * r / liquid.surface_tension, mesh)
+    surface = local.moved(r * (local.points + [0.0, 0.0, unit[2] + 1.0]))
+    # the wet spot cannot pass the sphere's equator: pi r^2 (p + 2 gamma / r) = p area
+    area = size**2 if shape == "square" else 0.25 * np.pi * size**2
+    carried = 2.0 * np.pi * r * liquid.surface_tension / (area - np.pi * r**2)
     law = None if penalty is None else penalty * liquid.surface_tension / r**2
 
     def at(value: float) -> Scene:
@@ -110,28 +114,89 @@ def asperity_cell(
         ],
         [Sector(model)],
         scale=Scale(r, liquid.surface_tension),
-        directions=np.tile([0.0, 0.0, 1.0], (surface.space.count, 1)),
-        ramp=Ramp("cell.pressure", (0.1 * pressure, pressure), at),
+        directions=directions,
+        ramp=Ramp("cell.pressure", (0.5 * pressure, pressure), at, bound=carried),
         substrate=sphere,
         kind="asperity_cell",
         description=_describe(sphere, size, pressure, shape, liquid, mesh, model),
     )
 
 
-def _flat(shape: str, size: float, wide: float, height: float, mesh: Mesh) -> Surface:
-    """Flat membrane, its normal down; even elements within ``wide`` of the middle."""
-    half, slope = 0.5 * size, 2.0 * wide / size / FINE
-    stretch = Stretch(FINE, slope) if slope < 1.0 else Stretch()
-    if shape == "square":
-        flat = sheet(2.0, elements=mesh.elements, degree=mesh.degree)
-        points = half * stretch(flat.points[:, [1, 0, 2]])
-        return flat.moved(points + [0.0, 0.0, height])
+@dataclass(frozen=True, eq=False)
+class _Drape:
+    """Round cell of the same area, solved exactly: a wet cap and the surface round it.
 
-    def profile(t: Array) -> tuple[Array, Array, Array]:
-        return half * stretch(1.0 - t), 0.0 * t, np.full_like(t, -half * stretch.slope)
+    Attributes
+    ----------
+    share : (k,) parameter from the top; r, z : radius and height there. Equal steps over the wet
+        spot and somewhat beyond, then longer ones.
+    slope : arc length over its whole per share at the top.
+    """
 
-    disc = axisymmetric(drop_space("bspline", mesh.degree, mesh.elements), profile)
-    return disc.moved(disc.points * [1.0, -1.0, 1.0] + [0.0, 0.0, height])
+    share: Array
+    r: Array
+    z: Array
+    slope: float
+
+
+def _drape(pressure: float, area: float) -> _Drape:
+    """Drape over the unit sphere with its top at 0 (tension 1).
+
+    The wet spot carries the cell, ``pi a^2 (p + 2) = p area``; outside it the vertical force
+    through a circle is that of the pressure beyond it: ``sin(angle) = p (R^2 - r^2) / (2 r)``.
+    """
+    outer = np.sqrt(area / np.pi)
+    spot = min(np.sqrt(pressure * area / (np.pi * (pressure + 2.0))), STEEPEST)
+    cap = np.linspace(0.0, np.arcsin(spot), 400)
+    r = spot + (outer - spot) * np.linspace(0.0, 1.0, 4000) ** 2
+    angle = np.arcsin(np.minimum(0.5 * pressure * (outer**2 - r**2) / r, STEEPEST))
+    slope = np.tan(0.5 * (angle[1:] + angle[:-1]))
+    z = np.cos(cap[-1]) - 1.0 - np.concatenate([[0.0], np.cumsum(slope * np.diff(r))])
+    r, z = np.concatenate([np.sin(cap), r[1:]]), np.concatenate([np.cos(cap) - 1.0, z[1:]])
+    walked = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
+    wide = 1.3 * walked[len(cap) - 1] / walked[-1]
+    stretch = Stretch(FINE, wide / FINE) if wide < FINE else Stretch()
+    even = np.linspace(0.0, 1.0, 8001)
+    share = stretch(even) * walked[-1]
+    return _Drape(even, np.interp(share, walked, r), np.interp(share, walked, z), stretch.slope)
+
+
+FINE = 0.6
+"""Part of the elements over the wet spot and its surroundings."""
+STEEPEST = float(np.sin(np.radians(87.0)))
+
+
+def _start(
+    shape: str, size: float, center: tuple[float, float, float], pressure: float, mesh: Mesh
+) -> tuple[Surface, Array]:
+    """Draped start over the unit sphere, and the vertical directions of its control points: they
+    hold the walls and make the vertical balance of forces exact."""
+    half = 0.5 * size
+    drape = _drape(pressure, size**2 if shape == "square" else np.pi * half**2)
+    if shape == "circle":
+        first = drape.slope * float(np.hypot(np.diff(drape.r), np.diff(drape.z)).sum())
+
+        def profile(t: Array) -> tuple[Array, Array, Array]:
+            r = np.interp(1.0 - t, drape.share, drape.r)
+            return r, np.interp(1.0 - t, drape.share, drape.z), np.full_like(t, -first)
+
+        disc = axisymmetric(drop_space("bspline", mesh.degree, mesh.elements), profile)
+        surface = disc.moved(disc.points * [1.0, -1.0, 1.0])
+    else:
+        flat = sheet(size, elements=mesh.elements, degree=mesh.degree)
+        x, y = flat.points[:, 1] - center[0], flat.points[:, 0] - center[1]
+        reach = np.hypot(x, y)
+        share = np.clip(reach / drape.r[-1], 0.0, 1.0)
+        out = np.interp(share, drape.share, drape.r) / np.maximum(reach, 1e-300)
+        moved = np.where(share < 1.0, out - 1.0, 0.0)
+        # points on the walls stay on them
+        wall_x = 1.0 - (flat.points[:, 1] / half) ** 4
+        wall_y = 1.0 - (flat.points[:, 0] / half) ** 4
+        x, y = x * (1.0 + moved * wall_x), y * (1.0 + moved * wall_y)
+        z = np.interp(np.hypot(x, y), drape.r, drape.z)
+        surface = flat.moved(np.stack([x + center[0], y + center[1], z], axis=1))
+    up = np.tile([0.0, 0.0, 1.0], (surface.space.count, 1))
+    return surface.moved(surface.points - SUNK * up), up
 
 
 def _describe(

@@ -27,12 +27,15 @@ class Ramp:
     values : what it is at equal parts of the load, from 0 to 1.
     scene_at : value of the parameter to the scene.
     asked : whether the user wants the way itself, not only its end: no direct solve is tried.
+    bound : value from which on a balance of forces known in closed form rules out every
+        equilibrium, or None.
     """
 
     parameter: str
     values: tuple[float, ...]
     scene_at: Callable[[float], Scene] = field(repr=False)
     asked: bool = False
+    bound: float | None = None
 
     @property
     def stops(self) -> Array:

@@ -174,7 +174,9 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     fixed["discretization"] = {"model": min(models, key=MODELS.index)} | mesh
     end = at(values[-1])
     description = dict(end.description) | {"path": [{"parameter": parameter, "values": values}]}
-    return replace(end, ramp=Ramp(parameter, values, at, asked=True), description=description)
+    bound = end.ramp.bound if end.ramp is not None and end.ramp.parameter == parameter else None
+    ramp = Ramp(parameter, values, at, asked=True, bound=bound)
+    return replace(end, ramp=ramp, description=description)
 
 
 def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any]:

@@ -93,6 +93,9 @@ def conclude(
             objection = _contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
+    sunk = _too_soft(scene, assembly, multipliers)
+    if sunk is not None and status is not Status.INTERRUPTED:
+        status, message = sunk
     if verdict is None and status is not Status.INTERRUPTED and _reaches_boundary(scene, surface):
         status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
         message = "the contact line reaches the rim: no sheet is left between them"
@@ -132,6 +135,24 @@ def conclude(
 NARROW = 0.02, 0.05
 """Width of a sheet over its rim's size, and gap between rim and particle over its radius, that
 leave no room for a sheet."""
+
+
+def _too_soft(scene: Scene, assembly: Assembly, multipliers: Array) -> tuple[Status, str] | None:
+    """A penalty that cannot hold the membrane out of the spheres: it gives way by the traction
+    ``p + 2 gamma / r`` over the penalty."""
+    law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
+    if law is None or law.penalty is None or assembly.contact is None:
+        return None
+    length = assembly.contact.length
+    curved = 0.0 if isinstance(law.solid, Plane) else 2.0 * assembly.tension / length
+    pressure = abs(assembly.density(multipliers).constant)
+    depth = (pressure + curved) / law.penalty / length
+    if depth <= 2.0 * law.depth:
+        return None
+    return Status.PENETRATION, (
+        f"a penalty of {law.penalty:.3g} gives way by {depth:.1e} radii, {law.depth:.0e} is "
+        "allowed: raise solver.penalty or use exact contact"
+    )
 
 
 def _reaches_boundary(scene: Scene, surface: Surface) -> bool:

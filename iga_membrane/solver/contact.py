@@ -160,5 +160,5 @@ class ContactSet:
         depth = -gap.min(axis=1, initial=0.0)
         allowed = self._depth * self.length
         deep = depth > 0.8 * allowed
-        self._lift[near[deep]] += depth[deep, None] - 0.5 * allowed
+        self._lift[near[deep]] = touch.at.gap[near[deep]] + depth[deep, None] - 0.5 * allowed
         return bool(deep.any())

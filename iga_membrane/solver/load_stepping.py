@@ -124,6 +124,8 @@ def load_stepping(
 
 BRACKET = 4e-4
 """Width of a bracket over the parameter's value."""
+BOUNDED = 0.02
+"""Distance from a ramp's known bound, over it, within which a failure is that bound's."""
 PATIENCE = 20
 """Newton iterations of one attempt: a load that needs more is approached by shorter steps."""
 FOLD = 3.0
@@ -161,6 +163,15 @@ def _give_up(
     a step before the last good load must end about where the attempts fail.
     """
     lo, hi = ramp.value(path.last_good), ramp.value(load)
+    bound = ramp.bound
+    if bound is not None and lo < bound <= ramp.values[-1] and bound - lo <= BOUNDED * bound:
+        path.result.status = Status.LIMIT_POINT
+        path.bracket = Bracket(ramp.parameter, lo, bound, path.result.index, failed.index)
+        path.result.message = (
+            f"no equilibrium from {ramp.parameter} = {bound:.6g} on, by the balance of forces "
+            f"({ramp.values[-1]:.6g} was asked for); found up to {lo:.6g}"
+        )
+        return
     step = load - path.last_good
     back = max(0.0, path.last_good - step)
     earlier = _attempt(assembly, path, ramp(back), options)
