@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..errors import SceneError
 from ..solids import Solid
 from ..splines import Space, pillow_space
 from ..splines.quadrature import gauss
@@ -20,8 +21,10 @@ from .start import Pancake, least_energy_pancake
 STARTS = ("flat", "above", "touching")
 PER_RADIUS = 3.35
 """Elements along the radius of the smallest asperity, by default."""
-FEWEST = 36
+FEWEST = 48
 """Elements from the middle to a side at least, for the droplet itself."""
+MOST = 600
+"""The same at most, by default."""
 FINE = 0.75
 """Part of the elements from the middle of the square to a side that lies under the foot."""
 
@@ -65,7 +68,14 @@ def whole_skin(
     if not elements:
         # physical length of the even elements, times their number
         across = wide / reach * stretch.slope
-        elements = max(FEWEST, int(np.ceil(PER_RADIUS * across / length)))
+        needed = PER_RADIUS * across / length
+        if needed > MOST:
+            raise SceneError(
+                f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "
+                f"elements from the middle to a side, more than {MOST}: not available yet; give "
+                "larger asperities, or discretization.elements"
+            )
+        elements = max(FEWEST, int(np.ceil(needed)))
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:

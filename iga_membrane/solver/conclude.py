@@ -329,6 +329,10 @@ def _footing(
     }
 
 
+ACROSS = 4
+"""Elements across a wet asperity that resolve it."""
+
+
 def _contact_objection(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[Status, str | None, str] | None:
@@ -341,6 +345,14 @@ def _contact_objection(
             Status.TOPOLOGY_CHANGE,
             "touches_base",
             "the liquid touches the plane under the asperities",
+        )
+    across = contact.across(contact.touch(surface.points))
+    if across < ACROSS:
+        return (
+            Status.UNDERRESOLVED,
+            None,
+            f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
+            "discretization.elements",
         )
     inside = engulfed(scene, assembly, surface)
     if inside:

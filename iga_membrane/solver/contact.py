@@ -66,7 +66,7 @@ class ContactSet:
 
     Attributes
     ----------
-    length : contact length: the smallest radius, 1 for a plane.
+    length : contact length: the smallest radius, at most the scene's own length.
     elements : (elements,) of the space.
     multipliers : (elements, points) tractions, >= 0.
     settled : whether the multipliers hold the gap; rounds : their updates so far.
@@ -87,10 +87,11 @@ class ContactSet:
         self._space, self._depth = space, depth
         self._lift = np.zeros(area.shape)
         self._lifts = LIFTS
-        self.length = solid.scale
+        self.length = min(solid.scale, 1.0)
         self.exact = penalty is None
         self.multipliers: Array = np.zeros(area.shape)
-        self._hard = HARD * area.sum(axis=1, keepdims=True)
+        self._size = area.sum(axis=1)
+        self._hard = HARD * self._size[:, None]
         self._soft = np.maximum(SOFT * self.length**2, self._hard)
         if isinstance(solid, Plane):
             self._soft = self._hard / HARDER  # a plane has no length; the start lies on it
@@ -133,6 +134,14 @@ class ContactSet:
         blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
         blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))
         return near, blocks
+
+    def across(self, touch: Touch) -> float:
+        """Fewest elements across the smallest sphere, where the membrane lies on one."""
+        wet = (touch.traction > 0).any(axis=1) & (touch.at.bend > 0).any(axis=1)
+        if not wet.any():
+            return np.inf
+        step = float(np.sqrt(self._size[wet].max()))
+        return 2.0 * self.solid.scale / step
 
     def give(self, touch: Touch) -> float:
         """Depth by which the stiffest contact would give way without multipliers."""

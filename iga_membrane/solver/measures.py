@@ -13,6 +13,7 @@ from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
 from ..terms import variations as vary
+from .apparent import apparent_angle, cassie_baxter_angle
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
 from .footing import Footing, footing
@@ -108,8 +109,18 @@ def _on_an_area(
     lying = float(found.areas.sum()) * scale.length**2
     known = values["A_wet"]  # the middle of a foot that the membrane leaves out
     top = _farthest(surface, lambda x: x[..., 2])
-    foot = float(np.sqrt((base_area(scene, found) + known / scale.length**2) / np.pi))
-    return {
+    base = base_area(scene, found) + known / scale.length**2
+    foot = float(np.sqrt(base / np.pi))
+    angles = {}
+    if isinstance(scene.substrate, (SphereLattice, Spheres)) and base > 0:
+        height = float(top[2])
+        angles = {
+            "apparent_angle": apparent_angle(height, body, assembly.tension),
+            "cassie_baxter_angle": cassie_baxter_angle(
+                float(found.areas.sum()), float(found.projected.sum()), base, 180.0
+            ),
+        }
+    return angles | {
         "A_LG": values["A_LG"] - lying,
         "A_wet": lying + known,
         "height": float(top[2]) * scale.length,

@@ -1,0 +1,60 @@
+"""Angles at which a droplet on asperities seems to stand on them."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ..terms import BodyDensity
+
+
+def apparent_angle(height: float, body: BodyDensity, tension: float) -> float:
+    """Angle of the axisymmetric Young-Laplace profile from the apex where it meets z = 0.
+
+    Parameters
+    ----------
+    height : of the apex.
+    body : body density of the Lagrangian, so minus the pressure.
+
+    Returns
+    -------
+    degrees; 180 where the profile closes above z = 0.
+
+    Notes
+    -----
+    What a goniometer sees: the profile knows the pressure and the height of the droplet, not its
+    asperities.
+    """
+
+    def slope(s: float, state: tuple[float, float, float]) -> list[float]:
+        r, z, turn = state
+        pressure = -(body.constant + body.gradient[2] * z)
+        around = np.sin(turn) / r if r > 0 else 0.5 * pressure / tension
+        return [np.cos(turn), -np.sin(turn), pressure / tension - around]
+
+    def ground(s: float, state: tuple[float, float, float]) -> float:
+        return state[1]
+
+    def closed(s: float, state: tuple[float, float, float]) -> float:
+        return np.pi - state[2]
+
+    for event in (ground, closed):
+        event.terminal = True  # type: ignore[attr-defined]
+    start = 1e-6 * height
+    turn = -0.5 * start * (body.constant + body.gradient[2] * height) / tension
+    path = solve_ivp(
+        slope, (start, 20.0 * height + 20.0), [start, height, turn],
+        events=(ground, closed), rtol=1e-9, atol=1e-12,
+    )  # fmt: skip
+    return float(np.degrees(min(path.y[2, -1], np.pi)))
+
+
+def cassie_baxter_angle(wet: float, projected: float, base: float, contact_angle: float) -> float:
+    """Cassie and Baxter's angle (degrees): ``cos = (A_wet cos(theta) + A_projected) / A_base - 1``.
+
+    Parameters
+    ----------
+    wet, projected : area of the wet spots, and projected on the base; base : area of the foot.
+    """
+    cosine = (wet * np.cos(np.radians(contact_angle)) + projected) / base - 1.0
+    return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
