@@ -10,11 +10,11 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 
-from ..checks import choice, integer, number, suggestion, vector
+from ..checks import choice, number, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from .asperities import STARTS
@@ -23,42 +23,12 @@ from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Ramp, Scene
+from .scene_keys import KEYS, check_numbers, table_of
 from .sheet import liquid_sheet
 
 SCHEMA = 1
 Tables = dict[str, Mapping[str, Any]]
 LARGEST_FILE = 10_000_000
-
-# Every table and key of the contract; those whose capability is not built are refused by name.
-KEYS: dict[str, tuple[str, ...]] = {
-    "": ("schema", "scene", "liquid", "gravity", "substrate", "particle", "droplet", "sheet",
-         "cell", "rings", "discretization", "solver", "path"),
-    "liquid": ("surface_tension", "density", "volume"),
-    "gravity": ("acceleration", "direction"),
-    "substrate": ("kind", "contact_angle", "radius", "spacing", "arrangement", "offset",
-                  "centers", "radii", "base"),
-    "particle": ("radius", "center", "density", "contact_angle", "motion"),
-    "droplet": ("hold",),
-    "sheet": ("boundary", "size", "pressure", "volume", "liquid_weight"),
-    "cell": ("shape", "size", "pressure"),
-    "rings": ("radius", "half_height", "volume", "pressure"),
-    "discretization": ("space", "degree", "elements", "model"),
-    "solver": ("motion", "stabilization", "contact", "penalty", "penetration_tolerance",
-               "contact_line", "start", "max_cpu_s", "max_memory_gb"),
-    "path": ("parameter", "values"),
-}  # fmt: skip
-
-
-LISTS = ("direction", "contact_angle", "offset", "centers", "radii", "center", "values")
-
-
-class Limits(TypedDict, total=False):
-    """Bounds of a number, by the names of :func:`iga_membrane.checks.number`."""
-
-    above: float
-    least: float
-    most: float
-
 
 SCENES = ("sessile_droplet", "liquid_sheet", "asperity_cell", "film_between_rings")
 MOTIONS = ("fixed", "vertical", "normal", "resting")
@@ -118,7 +88,7 @@ def read_scene(data: Any) -> SceneFile:
     ------
     SceneError
     """
-    data = _table("", data)
+    data = table_of("", data)
     if "schema" in data and data["schema"] != SCHEMA:
         raise SceneError(
             f"schema = {data['schema']!r}: this version reads schema {SCHEMA}; leave the key out "
@@ -128,7 +98,7 @@ def read_scene(data: Any) -> SceneFile:
         raise SceneError(f"scene: missing; must be one of {', '.join(map(repr, SCENES))}")
     kind = choice("scene", data["scene"], SCENES)
     tables = {
-        name: _table(name, data.get(name, {}))
+        name: table_of(name, data.get(name, {}))
         for name in KEYS
         if name and name not in ("particle", "path")
     }
@@ -137,9 +107,9 @@ def read_scene(data: Any) -> SceneFile:
         if not isinstance(entries, list):
             raise SceneError(f"{name}: must be a list of tables, [[{name}]]")
         for i, entry in enumerate(entries):
-            _check_numbers(f"{name}[{i}]", _table(name, entry, f"{name}[{i}]"))
+            check_numbers(f"{name}[{i}]", table_of(name, entry, f"{name}[{i}]"))
     for name, table in tables.items():
-        _check_numbers(name, table)
+        check_numbers(name, table)
     if kind not in _READERS:
         raise _later(f'scene = "{kind}"')
     for name in _FOREIGN[kind]:
@@ -420,63 +390,6 @@ def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
         if key in table:
             number(f"solver.{key}", table[key], above=0.0)
     return {key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table}
-
-
-def _table(name: str, value: Any, label: str | None = None) -> Mapping[str, Any]:
-    """A mapping with known keys only."""
-    label = name if label is None else label
-    if not isinstance(value, Mapping):
-        raise SceneError(f"{label or 'scene file'} = {value!r}: must be a table of keys and values")
-    for key in value:
-        if key not in KEYS[name]:
-            path = f"{label}.{key}" if label else str(key)
-            raise SceneError(
-                f"{path}: unknown key{suggestion(key, KEYS[name])} (known: {', '.join(KEYS[name])})"
-            )
-    return value
-
-
-_LIMITS: dict[str, Limits] = {
-    "surface_tension": {"above": 0.0},
-    "density": {"least": 0.0},
-    "volume": {"above": 0.0},
-    "acceleration": {"least": 0.0},
-    "contact_angle": {"above": 0.0, "most": 180.0},
-    "radius": {"above": 0.0},
-    "radii": {"above": 0.0},
-    "spacing": {"above": 0.0},
-    "size": {"above": 0.0},
-    "half_height": {"above": 0.0},
-}
-
-
-def _check_numbers(label: str, table: Mapping[str, Any]) -> None:
-    """Ranges of every number in a table, also of those that the scene does not use."""
-    texts = ("kind", "arrangement", "motion", "hold", "boundary", "shape", "space", "model",
-             "contact", "contact_line", "start", "parameter")  # fmt: skip
-    for key, value in table.items():
-        field = f"{label}.{key}"
-        if key in texts:
-            if not isinstance(value, str):
-                raise SceneError(f"{field} = {value!r}: must be text")
-        elif key == "liquid_weight":
-            if not isinstance(value, bool):
-                raise SceneError(f"{field} = {value!r}: must be true or false")
-        elif key in ("degree", "elements"):
-            least, most = (1, 4) if key == "degree" else (3, 4096)
-            integer(field, value, least=least, most=most)
-        else:
-            _check_nested(field, value, _LIMITS.get(key, Limits()))
-    if label == "discretization" and "model" in table:
-        choice("discretization.model", table["model"], MODELS)
-
-
-def _check_nested(field: str, value: Any, limits: Limits) -> None:
-    if isinstance(value, list) and field.rpartition(".")[2].partition("[")[0] in LISTS:
-        for i, item in enumerate(value):
-            _check_nested(f"{field}[{i}]", item, limits)
-    else:
-        number(field, value, **limits)
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

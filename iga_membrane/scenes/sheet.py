@@ -29,6 +29,7 @@ from ..surface.surface import Surface
 from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension, Term, Volume
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import FreeEdge, Ramp, Scene
+from .start import check_net
 
 BOUNDARIES = ("square", "circle")
 
@@ -131,7 +132,7 @@ def liquid_sheet(
             ramp = Ramp("sheet.volume", (0.0, volume), lambda v: again(volume=v))
     else:
         surface = start
-        _check_start(start, _space(particle, boundary, mesh))
+        check_net(start, _space(particle, boundary, mesh))
     length = 0.5 * size if particle is None else particle.radius
     scene = Scene(
         surface,
@@ -313,15 +314,6 @@ def _cap(space: Space, rim: float, depth: float) -> Surface:
 
     counterclockwise = axisymmetric(space, profile)
     return counterclockwise.moved(counterclockwise.points * [1.0, -1.0, 1.0])
-
-
-def _check_start(start: Surface, asked: Space) -> None:
-    given = start.space
-    if (given.net_shape, given.degree, given.pole) != (asked.net_shape, asked.degree, asked.pole):
-        raise SceneError(
-            f"start: control net {given.net_shape} of degree {given.degree} given, "
-            f"{asked.net_shape} of degree {asked.degree} expected from the discretization"
-        )
 
 
 def _describe(

@@ -13,7 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..errors import SceneError
+from ..splines import Space
 from ..splines.quadrature import gauss
+from ..surface.surface import Surface
 
 STEEPEST = 171.0
 """Contact angle of the start at most (degrees, with gravity): flatter feet start nearly tangent to
@@ -117,3 +120,18 @@ def drop_on_sphere(contact_angle: float, radius: float, volume: float) -> tuple[
         polar = 0.5 * (low + high)
         low, high = (polar, high) if drop(polar)[0] < volume else (low, polar)
     return polar, drop(polar)[1]
+
+
+def check_net(start: Surface, asked: Space) -> None:
+    """Refuse a start of another space.
+
+    Raises
+    ------
+    SceneError
+    """
+    given = start.space
+    if (given.net_shape, given.degree, given.pole) != (asked.net_shape, asked.degree, asked.pole):
+        raise SceneError(
+            f"start: control net {given.net_shape} of degree {given.degree} given, "
+            f"{asked.net_shape} of degree {asked.degree} expected from the discretization"
+        )

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import iga_membrane as iga
 from iga_membrane.cli import main
-from iga_membrane.scenes.scene_file import KEYS
+from iga_membrane.scenes.scene_keys import KEYS
 
 GOOD = {
     "scene": "sessile_droplet",
