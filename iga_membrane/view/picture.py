@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..errors import OutputError
-from ..solids import Sphere
+from ..solids import Sphere, SphereLattice, Spheres
 from ..solver.contact_line import contact_line
+from ..terms import Contact
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -35,6 +36,8 @@ def plot(
     resolution: int = 129,
     traction: bool = False,
     view: tuple[float, float, float] = (1.0, -2.2, 0.55),
+    zoom: float = 1.0,
+    focus: tuple[float, float, float] | None = None,
 ) -> Any:
     """Draw a solution.
 
@@ -46,6 +49,12 @@ def plot(
     resolution : points along each direction of the patch.
     traction : whether to draw the pull of the membrane on the solid along the contact line.
     view : direction from the middle of the picture to the eye, in the scene's frame.
+    zoom : enlargement.
+    focus : world point in the middle of the picture; the membrane's middle if omitted.
+
+    Notes
+    -----
+    Asperities that carry a part of the droplet are drawn red.
 
     Raises
     ------
@@ -70,7 +79,7 @@ def plot(
     opacity = 0.7 if traction else 1.0
     plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
     _substrate(plotter, pv, solution)
-    if solution.scene.substrate is not None:
+    if solution.scene.substrate is not None and not _on_an_area(solution):
         line = contact_line(solution.surface.moved(_local(solution)))
         world = solution.scene.units.to_world(line.position)
         curve = pv.lines_from_points(np.vstack([world, world[:1]]))
@@ -78,9 +87,9 @@ def plot(
         if traction:
             _arrows(plotter, pv, world, -line.conormal @ solution.scene.units.axes.T, length)
     up = solution.scene.units.axes
-    middle = np.array(mesh.center)
+    middle = np.array(mesh.center if focus is None else focus)
     eye = up @ np.array(view)
-    reach = 1.6 * mesh.length
+    reach = 1.6 * mesh.length / zoom
     plotter.camera_position = [middle + reach * eye / np.linalg.norm(eye), middle, up[:, 2]]
     plotter.enable_anti_aliasing("ssaa")
     if path is None:
@@ -142,12 +151,14 @@ def _membrane(solution: Solution, color: Color, resolution: int) -> tuple[Any, s
     """Smooth mesh with exact normals, and the name of its colours."""
     pv = _pyvista()
     surface = solution.surface
-    ring, _ = surface.space.bases
+    ring, across = surface.space.bases
     # stop just short of a pole, where the parametrization has no normal
     s = np.linspace(ring.breaks[0], ring.breaks[-1], 2 * resolution - 1)
-    t = np.linspace(0.0, 1.0, resolution)
+    t = np.linspace(across.breaks[0], across.breaks[-1], resolution)
     if surface.space.pole is not None:
         t[-1] -= 1e-4
+    if surface.space.shared is not None:  # nor has a closed square at the middles of its sides
+        s, t = (1.0 - 1e-6) * s, (1.0 - 1e-6) * t
     k = surface.at(np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1))
     x, y, z = (np.ascontiguousarray(k.position[..., i])[..., None] for i in range(3))
     mesh = pv.StructuredGrid(x, y, z).extract_surface(algorithm="dataset_surface")
@@ -176,8 +187,35 @@ def _range(values: Any, unit: float) -> tuple[float, float]:
     return float(middle - half), float(middle + half)
 
 
+def _on_an_area(solution: Solution) -> bool:
+    """Whether the membrane lies on the solid with its inside, not with an edge."""
+    return any(isinstance(term, Contact) for term in solution.scene.terms)
+
+
+def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
+    """Spheres under the droplet and a little beside it, and their base."""
+    substrate = solution.scene.substrate
+    assert isinstance(substrate, (SphereLattice, Spheres))
+    reach = 1.3 * float(np.linalg.norm(solution.surface.points[:, :2], axis=1).max())
+    near = substrate.within(reach)
+    wet = {asperity["index"] for asperity in solution.contact.get("asperities", ())}
+    dry = np.array([which not in wet for which in near.tolist()], bool)
+    for which, color in ((near[dry], "#d9d2c5"), (near[~dry], "#cc4125")):
+        cloud = pv.PolyData(substrate.center_of(which))
+        cloud["diameter"] = 2.0 * substrate.radius_of(which)
+        ball = pv.Sphere(radius=0.5, theta_resolution=40, phi_resolution=40)
+        balls = cloud.glyph(geom=ball, scale="diameter", orient=False)
+        plotter.add_mesh(balls, color=color, ambient=0.3, smooth_shading=True)
+    if substrate.base is not None:
+        base = pv.Disc(center=(0.0, 0.0, substrate.base), inner=0.0, outer=reach, c_res=120)
+        plotter.add_mesh(base, color="#d9d2c5", ambient=0.3)
+
+
 def _substrate(plotter: Any, pv: Any, solution: Solution) -> None:
     substrate, scale = solution.scene.substrate, solution.scene.units
+    if isinstance(substrate, (SphereLattice, Spheres)):
+        _asperities(plotter, pv, solution)
+        return
     if isinstance(substrate, Sphere):
         solid = pv.Sphere(
             radius=substrate.radius,

@@ -52,3 +52,13 @@ def test_figure11():
     assert example.critical_angle(0.1) == pytest.approx(144.05640220715, abs=1e-5)
     assert example.critical_angle(1.0, name="F_e_down") is None
     assert example.largest_bond(1.0) == pytest.approx(1.17, rel=2e-2)
+
+
+def test_droplet_on_asperities():
+    found = load("droplet_on_asperities").main(radius=0.1)
+    assert found["height_rough"] < found["height_flat"]
+    assert found["wet_rough"] < 0.3 * found["wet_flat"]
+    assert found["carried"] == pytest.approx(1.0, abs=1e-4)
+    assert found["asperities"] == 21
+    assert 0 < found["smallest_force"] < found["largest_force"] < 1.0
+    assert found["penetration"] < 1e-3

@@ -3,7 +3,7 @@ import sys
 
 import numpy as np
 import pytest
-from helpers import droplet
+from helpers import UNIT_VOLUME, droplet
 
 import iga_membrane as iga
 from iga_membrane.view import picture
@@ -50,6 +50,33 @@ def test_picture_shows_a_coloured_drop_on_its_plane(solution, tmp_path):
     middle = image[100:200, 150:250].reshape(-1, 3)
     assert middle.std(axis=0).max() > 0.02, "the drop has one flat colour"
     assert not np.allclose(middle.mean(axis=0), image[5, 5], atol=0.05), "the frame is empty"
+
+
+def test_picture_of_asperities_shows_the_wet_ones_in_red(tmp_path):
+    if not picture.can_draw():
+        pytest.skip(f"no rendering here: {picture.REMEDY}")
+    from matplotlib.image import imread
+
+    lattice = iga.SphereLattice(180.0, 0.2, 0.7, base=-0.3)
+    scene = iga.sessile_droplet(
+        lattice,
+        volume=UNIT_VOLUME,
+        gravity=1.0,
+        discretization=iga.Discretization(elements=16),
+        penetration_tolerance=0.1,
+    )
+    rough = iga.solve(scene, on_fail="return")
+    assert rough.contact["wet_solids"] >= 5
+
+    def red_part(**options):
+        path = tmp_path / "rough.png"
+        rough.plot(path, size=(400, 300), resolution=65, view=(1, -2, 0.05), **options)
+        red, green, blue = np.moveaxis(imread(path)[..., :3], -1, 0)
+        return ((red > 1.6 * green) & (red > 1.6 * blue)).mean()
+
+    whole = red_part(color="none")
+    assert whole > 1e-3
+    assert red_part(color="none", zoom=2.5, focus=(0.0, 0.0, 0.0)) > 2.0 * whole
 
 
 def test_a_machine_that_cannot_draw_is_told_what_to_install(solution, tmp_path, monkeypatch):
