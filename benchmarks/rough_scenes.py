@@ -49,7 +49,8 @@ def main() -> None:
     rows = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     solved = 0
     for name, substrate, bond in scenes():
-        scene = iga.sessile_droplet(substrate, volume=VOLUME, gravity=bond)
+        mesh = iga.Discretization(elements=40)
+        scene = iga.sessile_droplet(substrate, volume=VOLUME, gravity=bond, discretization=mesh)
         s = iga.solve(scene, on_fail="return")
         solved += s.success
         audit = s.audit

@@ -31,6 +31,9 @@ DISTORTED = 0.2
 """Distortion that is mended at once, also while steps are large."""
 ROUNDS = 30
 """Updates of the multipliers of contact at most."""
+CRAWL, PATIENCE = 0.02, 5
+"""Part of a step, and how often in a row no more of it may be taken, with contact: a membrane that
+has been carried too far sideways folds, and a new start is better."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -138,7 +141,7 @@ def _iterate(
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
     flee, approached = False, None
-    left, rounds = options.max_iterations, 0
+    left, rounds, crawling = options.max_iterations, 0, 0
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
@@ -168,6 +171,9 @@ def _iterate(
         result.iterations.append(Iteration(residual, size, taken, direction.shift))
         if moved is None and residual <= ROUNDING:
             return
+        crawling = crawling + 1 if taken < CRAWL else 0
+        if assembly.contact is not None and crawling >= PATIENCE:
+            raise _Stop(Status.STALLED, f"{PATIENCE} steps in a row were cut short")
         if moved is None:
             raise _Stop(
                 Status.STALLED,

@@ -82,7 +82,7 @@ def solve(
     return _delivered(replace(solution, scene=scene), on_fail)
 
 
-DRIFTS = 8
+DRIFTS = 20
 """New starts at most for a droplet that rolls to a place where it is stable."""
 
 
