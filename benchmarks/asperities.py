@@ -163,7 +163,10 @@ def main() -> None:
         "",
         "Default meshes. Contact radius is that of a disc as large as the lattice cells of the wet "
         "asperities. As the asperities shrink the height approaches that on the plane from below: "
-        "the liquid sags between tops that are level with the plane.",
+        "the liquid sags between tops that are level with the plane. At r_s = 0.2 no droplet rests "
+        "on the tops: a sphere carries at most (p + 2 gamma / r_s) pi r_s^2, with the membrane at "
+        "its equator, so the pressure must be below 2 pi gamma r_s / (spacing^2 - pi r_s^2), here "
+        "2.44, and on the plane it is already 2.92.",
         "",
         *against_radius(),
         "",

@@ -153,6 +153,17 @@ def test_a_sphere_off_the_middle_is_drawn_to_its_mirror_image():
     assert half.measures["energy"] < (1.0 - 1e-3) * cell("square", 16).measures["energy"]
 
 
+def test_a_sphere_carries_no_more_than_its_section():
+    """The membrane hangs from the equator at most: p s^2 = (p + 2 gamma / r) pi r^2."""
+    most = 2.0 * np.pi * RADIUS / (SIZE**2 - np.pi * RADIUS**2)
+    below = cell("square", 16, pressure=0.9 * most)
+    assert 65.0 < below.measures["phi_deg"] < 90.0
+    sphere = iga.Sphere(180.0, RADIUS, (0.0, 0.0, -RADIUS))
+    mesh = iga.Discretization(elements=8)
+    above = iga.asperity_cell(sphere, size=SIZE, pressure=1.05 * most, discretization=mesh)
+    assert not iga.solve(above, on_fail="return").success
+
+
 def test_forces_and_sag_do_not_depend_on_units():
     one = cell("square", 12).measures
     sphere = iga.Sphere(180.0, 1e3 * RADIUS, (0.0, 0.0, -1e3 * RADIUS))

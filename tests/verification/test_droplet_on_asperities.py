@@ -144,6 +144,22 @@ def test_a_droplet_off_a_lattice_site_rests_too():
     assert abs(solution.measures["height"] - HEIGHT) < 4e-3
 
 
+def test_large_asperities_far_apart_cannot_carry_the_pressure():
+    radius, spacing = 0.2, 0.8
+    most = 2.0 * np.pi * radius / (spacing**2 - np.pi * radius**2)
+    lattice = iga.SphereLattice(180.0, radius, spacing)
+
+    def at(bond):
+        scene = iga.sessile_droplet(lattice, volume=UNIT_VOLUME, gravity=bond)
+        return iga.solve(scene, on_fail="return")
+
+    light = at(0.3)
+    assert light.success
+    assert light.contact["max_penetration"] <= 1e-2 * radius
+    assert light.measures["p_base"] < most < drop_on_plane(1.0, 180.0)["p_base"]
+    assert not at(1.0).success
+
+
 def scattered(sizes, apart=0.35, reach=1.5, seed=5):
     """Spheres at random, their tops in z = 0, no two closer than a distance."""
     rng, places = np.random.default_rng(seed), []
