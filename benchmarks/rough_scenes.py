@@ -49,7 +49,7 @@ def main() -> None:
     rows = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     solved = 0
     for name, substrate, bond in scenes():
-        mesh = iga.Discretization(elements=40)
+        mesh = iga.Discretization(elements=40 if bond < 2.0 else 50)
         scene = iga.sessile_droplet(substrate, volume=VOLUME, gravity=bond, discretization=mesh)
         s = iga.solve(scene, on_fail="return")
         solved += s.success

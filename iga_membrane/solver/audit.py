@@ -35,6 +35,8 @@ class Audit:
     volume : over the prescribed volume; 0 where none is prescribed.
     force : vertical force balance ``p A_wet - line - weight`` over ``p A_wet`` plus the line's
         force, with the line's force from Young's angle.
+    sideways : horizontal force of the solid on the liquid over its weight, where gravity has none
+        and the model does not rule it out.
     line : the same with the line's force from the spline's own tangents: converges slower, so it
         tells how well the line is resolved.
     angle : mean cosine of the measured contact angle minus that of Young's.
@@ -45,6 +47,7 @@ class Audit:
     residual: float
     volume: float = 0.0
     force: float = 0.0
+    sideways: float = 0.0
     line: float = 0.0
     angle: float = 0.0
     penetration: float = 0.0
@@ -116,8 +119,14 @@ def audit(
         weight = body.gradient[2] * inside
         carried = -sector.copies * float(push[..., 2].sum())
         missing = abs(carried + weight) / max(abs(weight), abs(carried), TINY)
-        balanced = missing if _stands_free(scene) else 0.0
-        return Audit(residual, _missing(terms, inside), force=balanced, penetration=depth)
+        if not _stands_free(scene):
+            return Audit(residual, _missing(terms, inside), penetration=depth)
+        loose = [axis not in sector.mirrored for axis in "xy"]
+        pushed = sector.copies * push[..., :2].sum(axis=(0, 1)) * loose
+        pushed = pushed - np.array(body.gradient[:2]) * inside * loose
+        sideways = float(np.hypot(*pushed)) / max(abs(weight), TINY)
+        volume = _missing(terms, inside)
+        return Audit(residual, volume, missing, sideways, penetration=depth)
     if not lines:
         return Audit(residual, _missing(terms, inside))
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)

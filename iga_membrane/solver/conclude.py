@@ -37,7 +37,8 @@ class Tolerance:
     ----------
     residual : weak form on doubled quadrature.
     volume : relative error of the volume.
-    force : vertical balance of the drop.
+    force : vertical balance of the drop; sideways : horizontal one on asperities, where the
+        membrane's given directions follow shifts only approximately.
     line : the same from the spline's own contact angle.
     angle : error of the mean cosine of the contact angle.
     penetration : depth below a plane over the scene's length.
@@ -47,6 +48,7 @@ class Tolerance:
     residual: float = 1e-3
     volume: float = 1e-4
     force: float = 1e-3
+    sideways: float = 5e-3
     line: float = 2e-2
     angle: float = 2e-2
     penetration: float = 1e-6
@@ -151,7 +153,7 @@ def _too_soft(scene: Scene, assembly: Assembly, multipliers: Array) -> tuple[Sta
         return None
     return Status.PENETRATION, (
         f"a penalty of {law.penalty:.3g} gives way by {depth:.1e} radii, {law.depth:.0e} is "
-        "allowed: raise solver.penalty or use exact contact"
+        "allowed: raise solver.penalty, use exact contact, or raise solver.penetration_tolerance"
     )
 
 
@@ -245,6 +247,7 @@ def _defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
         ("residual on doubled quadrature", checked.residual, limit.residual),
         ("volume error", checked.volume, limit.volume),
         ("vertical force balance", checked.force, limit.force),
+        ("horizontal force balance", checked.sideways, limit.sideways),
         ("force balance at the contact line", checked.line, limit.line),
         ("error of the contact angle's cosine", abs(checked.angle), limit.angle),
     ):

@@ -154,11 +154,12 @@ class ContactSet:
         self.rounds += 1
         change = self.delta * np.abs(touch.traction - self.multipliers)
         self.settled = bool(change.max(initial=0.0) <= SETTLED * self.length)
-        self.multipliers = touch.traction
-        hard = bool((self.delta <= self._hard).all())
-        self.delta = np.maximum(HARDER * self.delta, self._hard)
-        if hard and self._lifts:
+        if (self.delta <= self._hard).all() and self._lifts:
             self.settled &= not self._lift_points(touch, points)
+        if self.settled:
+            return  # these tractions are the ones in balance
+        self.multipliers = touch.traction
+        self.delta = np.maximum(HARDER * self.delta, self._hard)
 
     def _lift_points(self, touch: Touch, points: Array) -> bool:
         """Lift the contact points of elements that lie too deep; whether there were any."""

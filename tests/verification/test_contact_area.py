@@ -79,9 +79,13 @@ def test_round_cells_of_a_rough_surface(case, tmp_path):
         tmp_path,
     )
     if not case["exists"]:
-        # the membrane has reached the sphere's equator: no state to report as one
-        assert code != 0
-        assert result["status"] not in ("CONVERGED_STABLE", "CONVERGED_MARGINAL")
+        # the wet spot cannot pass the sphere's equator: 2 pi r gamma / (area - pi r^2)
+        limit = 2.0 * np.pi * p["rs"] / (np.pi * (p["Rc"] ** 2 - p["rs"] ** 2))
+        bracket = result["bracket"]
+        assert code == 3
+        assert result["status"] == "LIMIT_POINT"
+        assert bracket["lo"] < limit <= bracket["hi"]
+        assert bracket["hi"] - bracket["lo"] < 0.012 * limit
         return
     assert code == 0
     found, exact = result["measures"], case["values"]

@@ -115,12 +115,7 @@ def test_the_papers_penalty_lowers_the_droplet():
 
 def test_a_penalty_that_drowns_the_asperities_is_no_success():
     solution = rough(elements=38, penalty=1e2)
-    assert not solution.success
-    assert solution.status in (
-        iga.Status.PENETRATION,
-        iga.Status.MAX_ITER,
-        iga.Status.STALLED,
-    )
+    assert solution.status is iga.Status.PENETRATION
 
 
 @pytest.mark.parametrize(
