@@ -82,6 +82,8 @@ def solve(
     return _delivered(replace(solution, scene=scene), on_fail)
 
 
+CENTRED = 0.02
+"""Way that a droplet may have rolled on its mesh: farther, its horizontal balance suffers."""
 DRIFTS = 20
 """New starts at most for a droplet that rolls to a place where it is stable."""
 
@@ -97,10 +99,12 @@ def _follow_drift(
     follow only so far: start anew where it has rolled to."""
     moved = np.zeros(3)
     for _ in range(DRIFTS):
-        if result.status in (None, Status.INTERRUPTED) or "xy" in scene.sector.mirrored:
+        if result.status is Status.INTERRUPTED or "xy" in scene.sector.mirrored:
             break
         place = _centroid(scene, assembly, result.surface)
         drift = place - _centroid(scene, assembly, start.moved(start.points + moved))
+        if result.status is None and np.linalg.norm(drift) <= CENTRED:
+            break
         log.info("the droplet has rolled by %.3g, %.3g: new start", drift[0], drift[1])
         moved = moved + drift
         iterations, seconds = result.iterations, result.linear_seconds
