@@ -12,7 +12,7 @@ from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading, points_of
 from ..surface.ring import axisymmetric, drop_space
-from ..surface.supports import Fixed, Sector, Sliding, Support
+from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import Contact, LineTerm, PlaneContactLine, Scale, SphereContactLine, Term
 from .asperities import estimated_foot, smallest_model, whole_skin
@@ -115,7 +115,11 @@ def _on_an_area(parts: Question) -> Foot:
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
         surface = surface.moved(parts.start.points)
-    return Foot(surface, Sector(model), mesh, [parts.law], directions=skin.directions)
+    sector = Sector(model)
+    free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
+    # on a plane every place is as good, and the centroid is held
+    supports = [Shift(free)] if free and not isinstance(substrate, Plane) else []
+    return Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
 
 
 COARSEST = 0.2

@@ -56,6 +56,7 @@ class System:
     constraints : (m,) prescribed integrals minus their values.
     scale : norm of the absolute force contributions, against which a residual is judged.
     matrix : Hessian of the energy minus multipliers times constraints.
+    shifts : how many of the last unknowns are shifts.
     """
 
     gradient: Array
@@ -63,6 +64,7 @@ class System:
     constraints: Array
     scale: float
     matrix: Matrix
+    shifts: int
 
     def residual(self, multipliers: Array) -> Array:
         """(n,) out-of-balance forces."""
@@ -145,12 +147,18 @@ class Assembly:
 
     @property
     def multipliers(self) -> int:
-        """Number of multipliers: of the constraints, then of the edges held on solids."""
-        return len(self._held) + int(self.spines.held.max(initial=-1)) + 1
+        """Number of multipliers: of the constraints, then of the edges held on solids, then of the
+        shifts' gauge."""
+        return len(self._held) + self._gap_count + len(self.spines.shifts)
+
+    @property
+    def _gap_count(self) -> int:
+        return int(self.spines.held.max(initial=-1)) + 1
 
     def line_load(self, multipliers: Array) -> Array:
         """(count,) coefficients of the load with which a curved solid holds its edge."""
-        loads = np.append(multipliers[len(self._held) :], 0.0)
+        first = len(self._held)
+        loads = np.append(multipliers[first : first + self._gap_count], 0.0)
         return loads[self.spines.held[self.spines.second]]
 
     @property
@@ -213,7 +221,7 @@ class Assembly:
         forces = vary.forces(self.table, at, self.tension, body)
         total = float((forces * displacement[self.table.functions]).sum())
         if self.contact is not None:
-            push = self.contact.forces(self.contact.touch(points))
+            push = self.contact.forces(self.contact.touch(points), self.contact.table)
             total += float((push * displacement[self.contact.table.functions]).sum())
         for term, edge in self.lines:
             forces = term.forces(edge, points, term.strength, body)
@@ -237,7 +245,8 @@ class Assembly:
         """(3,) force of the membrane on the solid it lies on (one sector)."""
         if self.contact is None:
             return np.zeros(3)
-        return self.contact.forces(self.contact.touch(surface.points)).sum(axis=(0, 1))
+        touch, table = self.contact.touch(surface.points), self.contact.table
+        return self.contact.forces(touch, table).sum(axis=(0, 1))
 
     def whole(self, vector: Array) -> Array:
         """(3,) sum over all sectors of a vector integrated over one."""
@@ -253,11 +262,13 @@ class Assembly:
             np.bincount(
                 self._held_numbers(edge).ravel() + 1,
                 gap.values(edge, points).ravel(),
-                self.multipliers - len(self._held) + 1,
+                self._gap_count + 1,
             )[1:]
             for gap, edge in self._gaps
         ]
-        return integrals[0], np.concatenate([integrals[1:] - self._targets, *gaps])
+        # every step keeps to the gauge, which is linear
+        gauge = np.zeros(len(self.spines.shifts))
+        return integrals[0], np.concatenate([integrals[1:] - self._targets, *gaps, gauge])
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
         """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
@@ -269,7 +280,7 @@ class Assembly:
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
-        return System(gradient, columns, constraints, size, matrix)
+        return System(gradient, columns, constraints, size, matrix, len(self.spines.shifts))
 
     def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
         """Gradients of the energy (n,) and of the constraints (n, m), without the Hessian."""
@@ -283,6 +294,7 @@ class Assembly:
         """Gradient (n,), gradients of the constraints (n, m), absolute contributions (n,)."""
         gradient, scale = np.zeros(self.size), np.zeros(self.size)
         columns = np.zeros((self.size, self.multipliers))
+        columns[:, self.multipliers - len(self.spines.shifts) :] = self.spines.gauge
         for elements, rows in self._groups:
             part = at.part(elements)
             work = _along(vary.forces(rows, part, self.tension, self.body), directions, rows)
@@ -292,10 +304,11 @@ class Assembly:
                 work = _along(vary.forces(rows, part, 0.0, held), directions, rows)
                 columns[:, k] += self._gather(work, rows.functions)
         if self.contact is not None:
-            push = self.contact.forces(self.contact.touch(points))
-            work = _along(push, directions, self.table)
-            gradient += self._gather(work, self.table.functions)
-            scale += self._gather(np.abs(work), self.table.functions)
+            rows = self._contact_rows
+            push = self.contact.forces(self.contact.touch(points), rows)
+            work = _along(push, directions, rows)
+            gradient += self._gather(work, rows.functions)
+            scale += self._gather(np.abs(work), rows.functions)
         for term, edge in self.lines:
             line = self._edge_rows(edge)
             forces = _again(term.forces(edge, points, term.strength, self.body), line)
@@ -335,9 +348,9 @@ class Assembly:
             )
             matrix.add(self.spines.unknowns[rows.functions], blocks)
         if self.contact is not None:
-            near, blocks = self.contact.hessian(self.contact.touch(points), directions)
-            functions = self.table.functions[near]
-            matrix.add(self.spines.unknowns[functions], blocks)
+            rows = self._contact_rows
+            near, blocks = self.contact.hessian(self.contact.touch(points), rows, directions)
+            matrix.add(self.spines.unknowns[rows.functions[near]], blocks)
         for term, edge in self.lines:
             self._add_edge(
                 matrix, directions, edge, term.hessian(edge, points, term.strength, body)
@@ -371,8 +384,11 @@ class Assembly:
     def _row_groups(self) -> list[tuple[slice | Index, Table]]:
         """Elements and their tables by rows of the motion; elements at a curved solid have more
         rows than functions."""
-        table, second = self.table, self.spines.second
-        spare = len(self.spines.points) - 1
+        table, second, spare = self.table, self.spines.second, self.spines.spare
+        if len(self.spines.shifts):
+            shifted = (self.spines.share[table.functions] != 0.0).any(axis=1)
+            moving, still = np.flatnonzero(shifted), np.flatnonzero(~shifted)
+            return [(still, table.part(still)), (moving, self._with_shifts(table.part(moving)))]
         more = second[table.functions] < spare
         touching = more.any(axis=1)
         if not touching.any():
@@ -383,12 +399,21 @@ class Assembly:
         rows = edge.with_columns(columns, second[edge.functions[:, columns]])
         return [(rest, table.part(rest)), (near, rows)]
 
+    def _with_shifts(self, table: Table) -> Table:
+        rows = self.spines.spare + 1 + np.arange(len(self.spines.shifts))
+        return table.with_field(self.spines.share, rows.tolist())
+
+    @cached_property
+    def _contact_rows(self) -> Table:
+        assert self.contact is not None
+        return self._with_shifts(self.contact.table)
+
     def _edge(self, edge: str) -> EdgeTable:
         return self._space.edge_table(edge, self.points[0], self._ring_elements)
 
     def _edge_rows(self, edge: EdgeTable) -> EdgeTable:
         """An edge's table by rows of the motion."""
-        second, spare = self.spines.second, len(self.spines.points) - 1
+        second, spare = self.spines.second, self.spines.spare
         more = second[edge.functions]
         columns = np.flatnonzero((more < spare).any(axis=0))
         return edge.with_columns(columns, more[:, columns]) if len(columns) else edge
@@ -409,7 +434,8 @@ class Assembly:
     @cached_property
     def _pattern(self) -> SparsePattern:
         return SparsePattern(
-            self.size, [self.spines.unknowns[rows.functions] for _, rows in self._groups]
+            self.size - len(self.spines.shifts),
+            [self.spines.unknowns[rows.functions] for _, rows in self._groups],
         )
 
 

@@ -181,6 +181,10 @@ def _iterate(
                 f"{residual:.1e})",
             )
         result.surface = moved
+        if assembly.contact is not None:
+            lag = np.linalg.norm(assembly.spines.lag(moved))
+            if assembly.rounds == 0 and lag > 0.25 * assembly.contact.length:
+                result.surface = assembly.spines.caught_up(moved)
         result.multipliers = result.multipliers + taken * (
             direction.multipliers - result.multipliers
         )
@@ -227,6 +231,15 @@ def _direction(system: System, *, plain: bool) -> _Direction:
     diagonal = np.maximum(diagonal, 1e-6 * diagonal.max(initial=0.0))
     factor = Bordered(system.matrix, border)
     index, shift = factor.index, 0.0
+    rolling = system.shifts
+    if index > 0 and not plain and rolling:
+        # a droplet that rolls down a hill: as far as up a bowl of the same curvature
+        curvature = np.linalg.eigvalsh(factor.last(rolling))
+        bowl = np.zeros(len(diagonal))
+        bowl[-rolling:] = 2.0 * max(0.0, -curvature[0])
+        bent = Bordered(system.matrix, border, bowl)
+        if bent.index <= 0:
+            factor = bent
     while factor.index > 0 and not plain and shift < 1e8:
         shift = max(10.0 * shift, 1e-3)
         factor = Bordered(system.matrix, border, shift * diagonal)
