@@ -7,6 +7,7 @@ eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -163,6 +164,32 @@ class Bordered:
             raise SingularMatrix(f"the linear solve leaves a relative defect of {miss / size:.1e}")
         return s, q
 
+    def stiffened(self, block: Array) -> Bordered:
+        """The same with a matrix (k, k) added to the last unknowns."""
+        k = len(block)
+        if self._matrix.pattern is None:
+            return Bordered(self._plus(block), self._border, self._shift)
+        other = copy(self)
+        other._matrix = self._plus(block)
+        other._schur = self._schur.copy()
+        other._schur[:k, :k] += block
+        other._count()
+        return other
+
+    def _plus(self, block: Array) -> Matrix:
+        plus = copy(self._matrix)
+        plus.data, plus.full = plus.data.copy(), plus.full.copy()
+        k = len(block)
+        if plus.pattern is None:
+            plus.dense()[-k:, -k:] += block
+        else:
+            plus.full[-k:] += block
+        return plus
+
+    def _count(self) -> None:
+        negative = int((np.linalg.eigvalsh(self._schur) < 0).sum()) if self._schur.size else 0
+        self.index = self._inner + negative - self._m
+
     def last(self, count: int) -> Array:
         """(count, count) Hessian of the last unknowns when all the others follow them."""
         unit = np.eye(self._n)[:, self._n - count :]
@@ -210,7 +237,7 @@ class Bordered:
         # Without row exchanges U = D L^T, so the signs of its diagonal are the inertia of K;
         # the Schur complement of the border and of the full columns adds its own (Sylvester,
         # Haynsworth).
-        negative = int((self._lu.U.diagonal() < 0).sum())
+        self._inner = int((self._lu.U.diagonal() < 0).sum())
         self._outer = np.hstack([full[:first], self._border[:first]])
         corner = np.zeros(2 * (self._outer.shape[1],))
         corner[: n - first, : n - first] = full[first:]
@@ -220,8 +247,7 @@ class Bordered:
         corner[n - first :, : n - first] = self._border[first:].T
         self._outer_solved = self._lu.solve(self._outer) if corner.size else self._outer
         self._schur = corner - self._outer.T @ self._outer_solved
-        negative += int((np.linalg.eigvalsh(self._schur) < 0).sum()) if corner.size else 0
-        self.index = negative - self._m
+        self._count()
 
     def _solve_once(self, top: Array, bottom: Array) -> tuple[Array, Array]:
         if self._matrix.pattern is None:

@@ -34,6 +34,11 @@ ROUNDS = 30
 CRAWL, PATIENCE = 0.02, 5
 """Part of a step, and how often in a row no more of it may be taken, with contact: a membrane that
 has been carried too far sideways folds, and a new start is better."""
+LAG, ROLLS = 1.0, 100
+"""Way over the contact length that a droplet may roll ahead of its foot's mesh, and how often the
+mesh follows."""
+ROLL = 0.5
+"""Way over the contact length that a droplet may roll in one step."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -141,7 +146,7 @@ def _iterate(
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
     flee, approached = False, None
-    left, rounds, crawling = options.max_iterations, 0, 0
+    left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
@@ -155,7 +160,8 @@ def _iterate(
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
         before = process_time()
-        direction = _direction(system, plain=residual <= options.near and not flee)
+        farthest = ROLL * assembly.contact.length if assembly.contact is not None else np.inf
+        direction = _direction(system, farthest, plain=residual <= options.near and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
@@ -183,8 +189,9 @@ def _iterate(
         result.surface = moved
         if assembly.contact is not None:
             lag = np.linalg.norm(assembly.spines.lag(moved))
-            if assembly.rounds == 0 and lag > 0.25 * assembly.contact.length:
-                result.surface = assembly.spines.caught_up(moved)
+            if assembly.rounds == 0 and lag > LAG * assembly.contact.length and rolled < ROLLS:
+                result.surface = assembly.spines.anew(moved)
+                left, rolled = left + 1, rolled + 1
         result.multipliers = result.multipliers + taken * (
             direction.multipliers - result.multipliers
         )
@@ -221,7 +228,7 @@ class _Direction:
     index: int
 
 
-def _direction(system: System, *, plain: bool) -> _Direction:
+def _direction(system: System, farthest: float, *, plain: bool) -> _Direction:
     """Newton step; the diagonal is shifted until the Hessian is positive where it must be.
 
     ``plain`` leaves the shift out: the step then leads to the nearest equilibrium, stable or not.
@@ -229,22 +236,33 @@ def _direction(system: System, *, plain: bool) -> _Direction:
     border = system.constraint_gradients
     diagonal = np.abs(system.matrix.diagonal())
     diagonal = np.maximum(diagonal, 1e-6 * diagonal.max(initial=0.0))
-    factor = Bordered(system.matrix, border)
-    index, shift = factor.index, 0.0
-    rolling = system.shifts
-    if index > 0 and not plain and rolling:
-        # a droplet that rolls down a hill: as far as up a bowl of the same curvature
-        curvature = np.linalg.eigvalsh(factor.last(rolling))
-        bowl = np.zeros(len(diagonal))
-        bowl[-rolling:] = 2.0 * max(0.0, -curvature[0])
-        bent = Bordered(system.matrix, border, bowl)
-        if bent.index <= 0:
-            factor = bent
-    while factor.index > 0 and not plain and shift < 1e8:
+    shift, index = 0.0, 0
+    while True:
+        try:
+            factor = Bordered(system.matrix, border, shift * diagonal if shift else None)
+            index = index if shift else factor.index
+            if system.shifts and not plain:
+                factor = _with_a_bowl(system, factor, farthest)
+            if factor.index <= 0 or plain or shift >= 1e8:
+                step, multipliers = factor.solve(-system.gradient, -system.constraints)
+                return _Direction(step, -multipliers, shift, index)
+        except SingularMatrix:
+            if plain or shift >= 1e8:
+                raise
+            index = max(index, 1)
         shift = max(10.0 * shift, 1e-3)
-        factor = Bordered(system.matrix, border, shift * diagonal)
-    step, multipliers = factor.solve(-system.gradient, -system.constraints)
-    return _Direction(step, -multipliers, shift, index)
+
+
+def _with_a_bowl(system: System, factor: Bordered, farthest: float) -> Bordered:
+    """Add the curvature of a bowl to the shifts: where they lower the energy like a ball on a hill
+    the step leads as far as up a bowl of the same curvature, and nowhere farther than allowed."""
+    step, _ = factor.solve(-system.gradient, -system.constraints)
+    curvature, axes = np.linalg.eigh(factor.last(system.shifts))
+    pull = -curvature * (axes.T @ step[-system.shifts :])
+    bowl = 2.0 * max(0.0, -curvature[0])
+    while np.linalg.norm(pull / (curvature + bowl)) > farthest:
+        bowl = 1.5 * bowl + 1e-3 * np.abs(curvature).max()
+    return factor.stiffened(bowl * np.eye(system.shifts)) if bowl else factor
 
 
 def _search(

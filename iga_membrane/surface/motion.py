@@ -117,8 +117,8 @@ class Spines:
         self.shifts: Array = np.eye(3)[["xyz".index(axis) for axis in axes]]
         self.share: Array = np.zeros(space.count)
         if axes:
-            assert directions is not None
-            self.share = 1.0 - np.minimum(directions[:, 2], 0.0) ** 2
+            height = np.maximum(surface.points[:, 2], 0.0)
+            self.share = height / height.max()
         last: Index = np.arange(len(axes))
         self.size = own + len(axes)
         self.points: Index = np.concatenate([np.arange(space.count), edge, [0], 0 * last])
@@ -174,18 +174,21 @@ class Spines:
         return Motion(self.points, rows, self.unknowns, self.size, self.shifts, self.share)
 
     def lag(self, surface: Surface) -> Array:
-        """(3,) way by which the part that is shifted is ahead of the part that is not."""
+        """(3,) way by which the top, which takes part in shifts, is ahead of the foot."""
         if not len(self.shifts):
             return np.zeros(3)
-        assert self._given is not None
-        top, foot = self._given[:, 2].argmax(), self._given[:, 2].argmin()
-        moved = surface.points[[top, foot]] - self._start[[top, foot]]
-        return np.asarray((moved[0] - moved[1]) @ self.shifts.T @ self.shifts)
+        return self._way(surface, int(self.share.argmax())) - self._way(
+            surface, int(self.share.argmin())
+        )
 
-    def caught_up(self, surface: Surface) -> Surface:
-        """The surface with all of it shifted as far as its most shifted part."""
-        behind = (1.0 - self.share)[:, None] * self.lag(surface)
-        return surface.moved(surface.points + behind)
+    def anew(self, surface: Surface) -> Surface:
+        """The start, as far away as the top of a surface has been shifted."""
+        return surface.moved(self._start + self._way(surface, int(self.share.argmax())))
+
+    def _way(self, surface: Surface, point: int) -> Array:
+        """(3,) way of a control point along the shifts."""
+        moved = surface.points[point] - self._start[point]
+        return np.asarray(moved @ self.shifts.T @ self.shifts)
 
     @cached_property
     def gauge(self) -> Array:
