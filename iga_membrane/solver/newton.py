@@ -123,6 +123,8 @@ def newton(
     count = assembly.multipliers
     if assembly.contact is not None:
         assembly.contact.begin()
+    if assembly.trim is not None:
+        assembly.trim.begin()
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
         if multipliers is None and count:
@@ -165,7 +167,7 @@ def _iterate(
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
-        displacement = motion.displacement(direction.step)
+        displacement = motion.displacement(assembly.extended(direction.step))
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")
@@ -236,21 +238,16 @@ def _direction(system: System, farthest: float, *, plain: bool) -> _Direction:
     border = system.constraint_gradients
     diagonal = np.abs(system.matrix.diagonal())
     diagonal = np.maximum(diagonal, 1e-6 * diagonal.max(initial=0.0))
-    shift, index = 0.0, 0
-    while True:
-        try:
-            factor = Bordered(system.matrix, border, shift * diagonal if shift else None)
-            index = index if shift else factor.index
-            if system.shifts and not plain:
-                factor = _with_a_bowl(system, factor, farthest)
-            if factor.index <= 0 or plain or shift >= 1e8:
-                step, multipliers = factor.solve(-system.gradient, -system.constraints)
-                return _Direction(step, -multipliers, shift, index)
-        except SingularMatrix:
-            if plain or shift >= 1e8:
-                raise
-            index = max(index, 1)
-        shift = max(10.0 * shift, 1e-3)
+    factor = Bordered(system.matrix, border)
+    index, shift = factor.index, 0.0
+    rolls = bool(system.shifts) and not plain
+    factor = _with_a_bowl(system, factor, farthest) if rolls else factor
+    while factor.index > 0 and not plain and shift < 1e8:
+        shift = max(8.0 * shift, 1e-3)  # never 1: a negative pivot would vanish
+        factor = Bordered(system.matrix, border, shift * diagonal)
+        factor = _with_a_bowl(system, factor, farthest) if rolls else factor
+    step, multipliers = factor.solve(-system.gradient, -system.constraints)
+    return _Direction(step, -multipliers, shift, index)
 
 
 def _with_a_bowl(system: System, factor: Bordered, farthest: float) -> Bordered:

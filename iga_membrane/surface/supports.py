@@ -106,8 +106,8 @@ class Shift:
     """A body that lies on a solid may also be shifted along some axes as a whole, but for its foot.
 
     Given directions that are vertical in the foot follow a shift only so far. It is an unknown of
-    its own, in which every control point takes part by its height at the start; the control points' own
-    steps then leave their mean place alone.
+    its own, in which every control point takes part by its height at the start; the control
+    points' own steps then leave their mean place alone.
 
     Attributes
     ----------
