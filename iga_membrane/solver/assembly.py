@@ -256,7 +256,7 @@ class Assembly:
         forces = vary.forces(self.table, at, self.tension, body)
         total = float((forces * displacement[self.table.functions]).sum())
         if self.contact is not None:
-            push = self.contact.forces(self.contact.touch(points), self.contact.table)
+            push = self.contact.forces(self.contact.touch(points))
             total += float((push * displacement[self.contact.table.functions]).sum())
         for term, edge in self.lines:
             forces = term.forces(edge, points, term.strength, body)
@@ -280,8 +280,7 @@ class Assembly:
         """(3,) force of the membrane on the solid it lies on (one sector)."""
         if self.contact is None:
             return np.zeros(3)
-        touch, table = self.contact.touch(surface.points), self.contact.table
-        return self.contact.forces(touch, table).sum(axis=(0, 1))
+        return self.contact.forces(self.contact.touch(surface.points)).sum(axis=(0, 1))
 
     def whole(self, vector: Array) -> Array:
         """(3,) sum over all sectors of a vector integrated over one."""
@@ -437,7 +436,7 @@ class Assembly:
             self._add_trim(matrix, points, directions, body)
         if self.contact is not None:
             rows = self._contact_rows
-            near, blocks = self.contact.hessian(self.contact.touch(points), rows, directions)
+            near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
             matrix.add(self.spines.unknowns[rows.functions[near]], blocks)
         for term, edge in self.lines:
             self._add_edge(
@@ -493,7 +492,8 @@ class Assembly:
         if len(self.spines.shifts):
             shifted = (self.spines.share[table.functions] != 0.0).any(axis=1)
             moving, still = np.flatnonzero(shifted), np.flatnonzero(~shifted)
-            return [(still, table.part(still)), (moving, self._with_shifts(table.part(moving)))]
+            foot = [(still, table.part(still))] if len(still) else []
+            return [*foot, (moving, self._with_shifts(table.part(moving)))]
         more = second[table.functions] < spare
         touching = more.any(axis=1)
         if not touching.any():
