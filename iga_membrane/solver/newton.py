@@ -34,11 +34,12 @@ ROUNDS = 30
 CRAWL, PATIENCE = 0.02, 5
 """Part of a step, and how often in a row no more of it may be taken, with contact: a membrane that
 has been carried too far sideways folds, and a new start is better."""
-LAG, ROLLS = 1.0, 100
+LAG, ROLLS = 1.0, 30
 """Way over the contact length that a droplet may roll ahead of its foot's mesh, and how often the
 mesh follows."""
-ROLL = 0.5
-"""Way over the contact length that a droplet may roll in one step."""
+ROLL, HELD = 0.5, 0.01
+"""Way over the contact length that a droplet may roll in one step: once its foot has taken a full
+step, and before."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -149,6 +150,7 @@ def _iterate(
     polish = POLISHES
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
+    steady, way = False, np.zeros(3)
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
@@ -162,7 +164,9 @@ def _iterate(
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
         before = process_time()
-        farthest = ROLL * assembly.contact.length if assembly.contact is not None else np.inf
+        farthest = np.inf
+        if assembly.contact is not None:
+            farthest = (ROLL if steady else HELD) * assembly.contact.length
         direction = _direction(system, farthest, plain=residual <= options.near and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
@@ -188,12 +192,14 @@ def _iterate(
                 f"no step along the Newton direction lowers the energy (relative residual "
                 f"{residual:.1e})",
             )
-        result.surface = moved
+        result.surface, steady = moved, taken == 1.0
         if assembly.contact is not None:
-            lag = np.linalg.norm(assembly.spines.lag(moved))
-            if assembly.rounds == 0 and lag > LAG * assembly.contact.length and rolled < ROLLS:
-                result.surface = assembly.spines.anew(moved)
-                left, rolled = left + 1, rolled + 1
+            lag = assembly.spines.lag(moved)
+            ahead = np.linalg.norm(lag) > LAG * assembly.contact.length
+            # one that rolls back is near its place
+            if ahead and assembly.rounds == 0 and rolled < ROLLS and lag @ way >= 0.0:
+                result.surface, steady = assembly.spines.anew(moved), False
+                left, rolled, way = options.max_iterations, rolled + 1, lag
         result.multipliers = result.multipliers + taken * (
             direction.multipliers - result.multipliers
         )
