@@ -33,10 +33,10 @@ ROUNDS = 30
 """Updates of the multipliers of contact at most."""
 CRAWL, PATIENCE = 0.02, 5
 """Part of a step, and how often in a row no more of it may be taken, with contact: a membrane that
-has been carried too far sideways folds, and a new start is better."""
+has been carried too far sideways folds."""
 LAG, ROLLS = 1.0, 30
-"""Way over the contact length that a droplet may roll ahead of its foot's mesh, and how often the
-mesh follows."""
+"""Way over the contact length that a droplet's top may roll ahead of its foot before the start
+begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
 step, and before."""
@@ -150,7 +150,8 @@ def _iterate(
     polish = POLISHES
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
-    steady, way = False, np.zeros(3)
+    steady = False
+    way: Array = np.zeros(3)
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
