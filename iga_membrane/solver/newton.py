@@ -39,7 +39,7 @@ LAG, ROLLS = 1.0, 30
 begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
-step, and before."""
+step, and before; less while it rolls to and fro."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -150,8 +150,9 @@ def _iterate(
     polish = POLISHES
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
-    steady = False
+    steady, reach = False, ROLL
     way: Array = np.zeros(3)
+    roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
@@ -167,7 +168,7 @@ def _iterate(
         before = process_time()
         farthest = np.inf
         if assembly.contact is not None:
-            farthest = (ROLL if steady else HELD) * assembly.contact.length
+            farthest = (reach if steady else HELD) * assembly.contact.length
         direction = _direction(system, farthest, plain=residual <= options.near and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
@@ -194,6 +195,8 @@ def _iterate(
                 f"{residual:.1e})",
             )
         result.surface, steady = moved, taken == 1.0
+        last, roll = roll, direction.step[assembly.size - len(roll) :]
+        reach = max(0.5 * reach, HELD) if roll @ last < 0.0 else min(1.5 * reach, ROLL)
         if assembly.contact is not None:
             lag = assembly.spines.lag(moved)
             ahead = np.linalg.norm(lag) > LAG * assembly.contact.length
