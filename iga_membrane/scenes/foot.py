@@ -63,20 +63,21 @@ class Foot:
     predictor: Sequence[Term] = ()
 
 
-CONTACT_LINES = ("auto", "conforming", "trimmed")
+CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
 
 
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
-    refused = "trimmed" if isinstance(solid, Plane) else "conforming"
-    if way == refused and not isinstance(solid, Sphere):
+    refused: tuple[str, ...] = ("trimmed", "adhesion")
+    if isinstance(solid, (SphereLattice, Spheres)):
+        refused = ("conforming",)
+    if way in refused:
         raise SceneError(
-            f'solver.contact_line = "{way}": not available here; a plane\'s contact line is '
-            '"conforming", those on asperities are "trimmed", a sphere has either; "auto" knows'
+            f'solver.contact_line = "{way}": not available here; on a plane or one sphere it is '
+            '"conforming", on asperities "trimmed", or "adhesion" near 180 degrees; "auto" knows'
         )
-    line = isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0
-    if line and way != "trimmed":
+    if isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0:
         return _on_a_line(parts)
     exact = parts.law.penalty is None and parts.start is None
     return _on_the_plane(parts) if isinstance(solid, Plane) and exact else _on_an_area(parts)
@@ -140,7 +141,25 @@ def _on_an_area(parts: Question) -> Foot:
     foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
+    most = float(np.max(substrate.contact_angle))
+    if parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP):
+        if most > least:
+            raise SceneError(
+                f"substrate.contact_angle: {least:g} to {most:g} degrees: adhesion has one angle "
+                "for all spheres; give one, or smaller ones"
+            )
+        return replace(foot, terms=[replace(parts.law, adhesion=adhesion(parts.liquid, least))])
     return _through(foot, parts, skin.pressure)
+
+
+SHARP = 172.0
+"""Contact angle in degrees above which a line on an asperity is not resolved by the default mesh:
+the membrane leaves so flat that lying on the sphere, which attracts it, is the better model."""
+
+
+def adhesion(liquid: Liquid, contact_angle: float) -> float:
+    """Energy per wetted area, Young and Dupre's ``gamma (1 + cos(theta))``."""
+    return liquid.surface_tension * (1.0 + float(np.cos(np.radians(contact_angle))))
 
 
 def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
