@@ -10,7 +10,8 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
-from ..splines import Grading, points_of
+from ..splines import Grading, pillow_space, points_of
+from ..surface.closed import Stretch, closed_surface
 from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
@@ -24,7 +25,7 @@ from ..terms import (
     TrimmedContactLine,
 )
 from ..terms.term import AnySolid
-from .asperities import estimated_foot, smallest_model, whole_skin
+from .asperities import ball, estimated_foot, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
 
@@ -72,11 +73,16 @@ def foot_of(parts: Question) -> Foot:
     refused: tuple[str, ...] = ("trimmed", "adhesion")
     if isinstance(solid, (SphereLattice, Spheres)):
         refused = ("conforming",)
+    elif isinstance(solid, Sphere):
+        refused = ("adhesion",)
     if way in refused:
         raise SceneError(
-            f'solver.contact_line = "{way}": not available here; on a plane or one sphere it is '
-            '"conforming", on asperities "trimmed", or "adhesion" near 180 degrees; "auto" knows'
+            f'solver.contact_line = "{way}": not available here; on a plane it is "conforming", on '
+            'one sphere also "trimmed", on asperities "trimmed", or "adhesion" near 180 degrees; '
+            '"auto" knows'
         )
+    if isinstance(solid, Sphere) and way == "trimmed":
+        return _through_one(parts)
     if isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0:
         return _on_a_line(parts)
     exact = parts.law.penalty is None and parts.start is None
@@ -160,6 +166,36 @@ the membrane leaves so flat that lying on the sphere, which attracts it, is the 
 def adhesion(liquid: Liquid, contact_angle: float) -> float:
     """Energy per wetted area, Young and Dupre's ``gamma (1 + cos(theta))``."""
     return liquid.surface_tension * (1.0 + float(np.cos(np.radians(contact_angle))))
+
+
+def _through_one(parts: Question) -> Foot:
+    """A ball that passes through a sphere: without gravity its outer part is the drop."""
+    solid, scale = parts.substrate, parts.scale
+    assert isinstance(solid, Sphere)
+    if (
+        solid.contact_angle == 180.0
+        or parts.law.penalty is not None
+        or parts.start is not None
+        or parts.asked.space != "bspline"
+    ):
+        raise SceneError(
+            'solver.contact_line = "trimmed": on one sphere it needs an angle below 180 degrees, '
+            'the scene\'s own start, no penalty and space "bspline"'
+        )
+    mesh, radius = parts.asked.mesh(degree=2, elements=BALL_ELEMENTS), solid.radius / scale.length
+    polar, cap = drop_on_sphere(solid.contact_angle, radius, BALL)
+    space = pillow_space(mesh.degree, mesh.elements)
+    points, directions = closed_surface(space, ball(cap.radius), Stretch())
+    # the line lies 1 - cos(polar) radii under the sphere's top, at the cap's lowest circle
+    lowest = -2.0 * radius * np.sin(0.5 * polar) ** 2
+    points[:, 2] += lowest - cap.radius * (1.0 + np.cos(cap.turn))
+    line = TrimmedContactLine(parts.liquid.surface_tension, solid)
+    surface = Surface(space, scale.to_world(points))
+    return Foot(surface, _sector(mesh, parts.bond), mesh, [line], directions=directions)
+
+
+BALL_ELEMENTS = 48
+"""From the middle of such a ball's foot to its widest place."""
 
 
 def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
