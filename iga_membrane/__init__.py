@@ -39,6 +39,7 @@ _HOME = {
     "solver.solve": ("solve",),
     "solver.trace": ("Path", "trace"),
     "solver.contact_line": ("contact_line",),
+    "analysis.convergence": ("Study", "convergence_study"),
     "analysis.critical": ("Crossing", "critical_value"),
     "view.picture": ("plot",),
     "view.export": ("save",),
