@@ -168,6 +168,7 @@ class Study:
             If the file cannot be written.
         """
         from matplotlib.figure import Figure
+        from matplotlib.ticker import NullFormatter
 
         name = choice("measure", measure or self.measures[0], self.measures)
         choice("against", against, COSTS)
@@ -189,6 +190,7 @@ class Study:
             for run, a, b in zip(runs, x, y, strict=True):
                 good = run.status is Status.CONVERGED_STABLE
                 axes.plot(a, b, "o", color=colour, fillstyle="full" if good else "none")
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.grid(True, alpha=0.3)
         axes.legend()
         try:

@@ -82,6 +82,8 @@ class Scene:
     grading : spread of the control points along the meridians.
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
+    motion : "spines", one unknown per control point, or "cartesian", three, which needs a
+        Stabilization.
     ramp : the way to this scene if a direct solve fails.
     free_edge : the way to find a fixed edge's place at 180 degrees.
     substrate : the solid that the membrane touches, for its kind, forces and pictures.
@@ -99,6 +101,7 @@ class Scene:
     scale: Scale | None = None
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
+    motion: str = "spines"
     ramp: Ramp | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None

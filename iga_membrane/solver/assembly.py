@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import process_time
 
@@ -11,15 +11,17 @@ import numpy as np
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, Table
+from ..surface.cartesian import Cartesian
 from ..surface.motion import Spines
 from ..surface.sector import sector_elements, sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
-from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, Contact, LineTerm
+from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, Contact, LineTerm, Stabilization
 from ..terms import variations as vary
 from ..terms.edge_gap import EdgeGap
 from .contact import ContactSet
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
+from .stabilizer import Stabilizer
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,7 @@ class Assembly:
         self.copies = sector.copies
         self._mirrored = [axis in sector.mirrored for axis in "xyz"]
         self._supports: tuple[Support, ...] = scene.local_supports()
-        self.spines = Spines(surface, self._supports, scene.directions)
+        self.spines = _motion(scene, surface, self._supports)
         self.size = self.spines.size
         ring = space.bases[0]
         around = max(3, ring.degree) if ring.periodic and ring.smooth else ring.degree + 1
@@ -107,6 +109,7 @@ class Assembly:
         self._space = space
         self._groups = self._row_groups()
         self.contact = self._contact(scene, surface)
+        self.stabilizer: Stabilizer | None = None
         self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
         self.load(scene)
 
@@ -128,7 +131,7 @@ class Assembly:
         terms, supports = scene.local_terms(), scene.local_supports()
         if supports != self._supports:
             self._supports = supports
-            self.spines = Spines(scene.local_surface(), supports, scene.directions)
+            self.spines = _motion(scene, scene.local_surface(), supports)
         self.constraints = [t for t in terms if isinstance(t, Constraint)]
         self.tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
         self._bodies = [
@@ -142,6 +145,17 @@ class Assembly:
             for s in scene.local_supports()
             if isinstance(s, Sliding) and s.solid is not None
         ]
+
+    def begin_step(self, scene: Scene, surface: Surface, *, projected: bool | None = None) -> None:
+        """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
+        eq. (23), and tractions of the penalty count per area of it."""
+        term = next(t for t in scene.local_terms() if isinstance(t, Stabilization))
+        if projected is not None:
+            term = replace(term, projected=projected)
+        normals = self.spines.on(surface).directions[: self._space.count]
+        self.stabilizer = Stabilizer(term, self.table, surface.points, normals)
+        if self.contact is not None:
+            self.contact.area = self.stabilizer.before.area
 
     @property
     def multipliers(self) -> int:
@@ -171,6 +185,8 @@ class Assembly:
         total, constraints = self._values(points, at)
         if self.contact is not None:
             total += self.contact.energy(self.contact.touch(points))
+        if self.stabilizer is not None:
+            total += self.stabilizer.energy(points)
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
 
@@ -293,9 +309,14 @@ class Assembly:
                 columns[:, k] += self._gather(work, rows.functions)
         if self.contact is not None:
             push = self.contact.forces(self.contact.touch(points))
-            work = _along(push, directions, self.table)
-            gradient += self._gather(work, self.table.functions)
-            scale += self._gather(np.abs(work), self.table.functions)
+            rows = self._by_rows(self.contact.table)
+            work = _along(push[:, self._columns], directions, rows)
+            gradient += self._gather(work, rows.functions)
+            scale += self._gather(np.abs(work), rows.functions)
+        if self.stabilizer is not None:
+            rows, hold = self._by_rows(self.table), self.stabilizer.forces(points)
+            work = _along(hold[:, self._columns], directions, rows)
+            gradient += self._gather(work, rows.functions)
         for term, edge in self.lines:
             line = self._edge_rows(edge)
             forces = _again(term.forces(edge, points, term.strength, self.body), line)
@@ -335,9 +356,15 @@ class Assembly:
             )
             matrix.add(self.spines.unknowns[rows.functions], blocks)
         if self.contact is not None:
-            near, blocks = self.contact.hessian(self.contact.touch(points), directions)
-            functions = self.table.functions[near]
-            matrix.add(self.spines.unknowns[functions], blocks)
+            touch = self.contact.touch(points)
+            rows = self._by_rows(self.contact.table)
+            near, blocks = self.contact.hessian(touch, directions, rows)
+            matrix.add(self.spines.unknowns[rows.functions[near]], blocks)
+        if self.stabilizer is not None:
+            rows = self._by_rows(self.table)
+            along = directions[rows.functions]
+            blocks = self.stabilizer.hessian(points, rows, self._columns, along)
+            matrix.add(self.spines.unknowns[rows.functions], blocks)
         for term, edge in self.lines:
             self._add_edge(
                 matrix, directions, edge, term.hessian(edge, points, term.strength, body)
@@ -360,38 +387,63 @@ class Assembly:
         )
 
     def mass(self, surface: Surface, directions: Array) -> Matrix:
-        """Mass matrix of normal displacement."""
+        """Mass matrix of normal displacement; of all displacement where tangents move too."""
         at = vary.element_points(self.table, surface.points)
         matrix = self._matrix()
+        full = self.stabilizer is not None
         for elements, rows in self._groups:
-            blocks = vary.mass(rows, at.part(elements), directions[rows.functions])
+            blocks = vary.mass(rows, at.part(elements), directions[rows.functions], full=full)
             matrix.add(self.spines.unknowns[rows.functions], blocks)
         return matrix
 
     def _row_groups(self) -> list[tuple[slice | Index, Table]]:
         """Elements and their tables by rows of the motion; elements at a curved solid have more
-        rows than functions."""
-        table, second = self.table, self.spines.second
-        spare = len(self.spines.points) - 1
-        more = second[table.functions] < spare
-        touching = more.any(axis=1)
+        rows than functions, and all have with three unknowns per control point."""
+        table, spare = self.table, len(self.spines.points) - 1
+        touching = np.zeros(len(table.functions), bool)
+        for extra in self.spines.extra:
+            touching |= (extra[table.functions] < spare).any(axis=1)
         if not touching.any():
             return [(slice(None), table)]
+        if touching.all():
+            return [(slice(None), self._by_rows(table))]
         near, rest = np.flatnonzero(touching), np.flatnonzero(~touching)
-        columns = np.flatnonzero(more.any(axis=0))
         edge = table.part(near)
-        rows = edge.with_columns(columns, second[edge.functions[:, columns]])
-        return [(rest, table.part(rest)), (near, rows)]
+        return [(rest, table.part(rest)), (near, edge.with_columns(*self._extra(edge.functions)))]
+
+    def _extra(self, functions: Index) -> tuple[Index, Index]:
+        """Which local functions have further rows of the motion, and those rows."""
+        spare = len(self.spines.points) - 1
+        columns, rows = [], []
+        for extra in self.spines.extra:
+            more = extra[functions]
+            own = np.flatnonzero((more < spare).any(axis=0))
+            columns.append(own)
+            rows.append(more[:, own])
+        return np.concatenate(columns), np.hstack(rows)
+
+    def _by_rows(self, table: Table) -> Table:
+        """A table of all elements by rows of the motion, where it has three for every point; it
+        is then that of the quadrature points, where a penalty acts too."""
+        return self._wide if isinstance(self.spines, Cartesian) else table
+
+    @cached_property
+    def _wide(self) -> Table:
+        return self.table.with_columns(*self._extra(self.table.functions))
+
+    @property
+    def _columns(self) -> Index:
+        """Which function belongs to each row of :meth:`_by_rows`."""
+        local = self.table.functions.shape[1]
+        return np.tile(np.arange(local), 3 if isinstance(self.spines, Cartesian) else 1)
 
     def _edge(self, edge: str) -> EdgeTable:
         return self._space.edge_table(edge, self.points[0], self._ring_elements)
 
     def _edge_rows(self, edge: EdgeTable) -> EdgeTable:
         """An edge's table by rows of the motion."""
-        second, spare = self.spines.second, len(self.spines.points) - 1
-        more = second[edge.functions]
-        columns = np.flatnonzero((more < spare).any(axis=0))
-        return edge.with_columns(columns, more[:, columns]) if len(columns) else edge
+        columns, rows = self._extra(edge.functions)
+        return edge.with_columns(columns, rows) if len(columns) else edge
 
     def _held_numbers(self, edge: EdgeTable) -> Index:
         """(elements, local) number of the gap constraint of each function, -1 for none."""
@@ -411,6 +463,13 @@ class Assembly:
         return SparsePattern(
             self.size, [self.spines.unknowns[rows.functions] for _, rows in self._groups]
         )
+
+
+def _motion(scene: Scene, surface: Surface, supports: tuple[Support, ...]) -> Spines:
+    """The motion that a scene asks for."""
+    if scene.motion == "cartesian":
+        return Cartesian(surface, supports)
+    return Spines(surface, supports, scene.directions)
 
 
 def _along(forces: Array, directions: Array, rows: Table | EdgeTable) -> Array:

@@ -122,11 +122,19 @@ class ContactSet:
         push = -(touch.traction * self.area)[..., None] * touch.at.normal
         return np.asarray(self.table.values.transpose(0, 2, 1) @ push)
 
-    def hessian(self, touch: Touch, directions: Array) -> tuple[Index, Array]:
-        """Elements in contact and the second derivative along directions (control points, 3)."""
+    def hessian(
+        self, touch: Touch, directions: Array, table: Table | None = None
+    ) -> tuple[Index, Array]:
+        """Elements in contact and the second derivative along directions (rows, 3).
+
+        Parameters
+        ----------
+        table : the contact points' functions by rows of the motion, if those are more.
+        """
+        table = table or self.table
         near = np.flatnonzero((touch.traction > 0).any(axis=1))
-        rows, at = self.table.values[near], touch.at
-        d = directions[self.table.functions[near]]
+        rows, at = table.values[near], touch.at
+        d = directions[table.functions[near]]
         bent = self.area[near] * touch.traction[near] * at.bend[near]
         soft = np.broadcast_to(self.delta, self.area.shape)[near]
         stiff = self.area[near] * (touch.traction[near] > 0) / soft

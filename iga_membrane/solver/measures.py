@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from ..arrays import Array
 from ..scenes.scene import Scene
@@ -186,6 +185,8 @@ def base_area(scene: Scene, found: Footing) -> float:
     if isinstance(solid, SphereLattice):
         return float(on_sphere.sum() * solid.area_per_sphere)
     if isinstance(solid, Spheres) and on_sphere.sum() >= 3:
+        from scipy.spatial import ConvexHull
+
         return float(ConvexHull(found.centers[on_sphere, :2]).volume)
     return float(found.projected.sum())
 
