@@ -14,7 +14,18 @@ from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading
 from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
-from ..terms import BodyTerm, Centroid, Constraint, Contact, LineTerm, Scale, SurfaceTension, Term
+from ..terms import (
+    BodyTerm,
+    Centroid,
+    Constraint,
+    Contact,
+    LineTerm,
+    PlaneContactLine,
+    Scale,
+    SphereContactLine,
+    SurfaceTension,
+    Term,
+)
 
 
 @dataclass(frozen=True)
@@ -157,6 +168,12 @@ class Scene:
                     f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
                     "model here"
                 )
+
+    @property
+    def line_inside(self) -> str | None:
+        """The line of a membrane that covers the wetted area too, where it leaves the solid."""
+        lines = (t for t in self.terms if isinstance(t, (PlaneContactLine, SphereContactLine)))
+        return next((t.edge for t in lines if t.covered), None)
 
     @property
     def lateral_load(self) -> dict[str, float]:

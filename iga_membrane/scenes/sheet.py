@@ -29,7 +29,7 @@ from ..surface.surface import Surface
 from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension, Term, Volume
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import FreeEdge, Ramp, Scene
-from .start import check_net
+from .start import check_net, funnel
 
 BOUNDARIES = ("square", "circle")
 
@@ -253,25 +253,14 @@ def _start(
 def _funnel(
     space: Space, particle: Sphere, half: float, boundary: str, curvature: float
 ) -> Surface:
-    """The sheet of small slopes, ``z = z_a + B log(r / a) + p (r^2 - a^2) / 4 gamma``, from the
-    circle where it meets the sphere at Young's angle to the rim."""
-    r, (x, y, z) = particle.radius, particle.center
-    rim, quarter = (half - max(abs(x), abs(y))) / r, 0.25 * curvature * r
-    polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
-    polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
-    a, depth = np.sin(polar), z / r + np.cos(polar)
-    log = -(depth + quarter * (rim**2 - a**2)) / np.log(rim / a)
-    slope = np.arctan(log / a + 2.0 * quarter * a)
-    excess = np.pi - np.radians(particle.contact_angle) - polar - slope
-    falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
-    # the last crossing is the stable one; without any, the nearest to one
-    k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
+    """The sheet of small slopes from its circle on the sphere to the rim."""
+    r, (x, y, _) = particle.radius, particle.center
+    profile = funnel(particle, half, curvature)
     ring = circle(space.bases[0])
     outer = half * ring if boundary == "circle" else half * square(space.bases[0])
-    inner = np.array([x, y, 0.0]) + r * a[k] * ring
+    inner = np.array([x, y, 0.0]) + r * profile.edge * ring
     points, matrix = meridian_interpolation(space)
-    at = a[k] + (rim - a[k]) * points
-    sag = r * (depth[k] + log[k] * np.log(at / a[k]) + quarter * (at**2 - a[k] ** 2))
+    sag = r * profile.height(profile.edge + (profile.rim - profile.edge) * points)
     values = np.stack([1.0 - points, points, sag], axis=1)
     first, second, height = np.linalg.solve(matrix, values).T[:, :, None]
     up = np.array([0.0, 0.0, 1.0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from time import process_time
 
@@ -146,16 +146,21 @@ class Assembly:
             if isinstance(s, Sliding) and s.solid is not None
         ]
 
-    def begin_step(self, scene: Scene, surface: Surface, *, projected: bool | None = None) -> None:
+    def begin_step(self, surface: Surface, term: Stabilization) -> None:
         """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
         eq. (23), and tractions of the penalty count per area of it."""
-        term = next(t for t in scene.local_terms() if isinstance(t, Stabilization))
-        if projected is not None:
-            term = replace(term, projected=projected)
-        normals = self.spines.on(surface).directions[: self._space.count]
+        normals = self.spines.on(surface).directions[: self._space.count].copy()
+        if self.contact is not None and self.lines:
+            # the contact line is a kink, which has no tangent plane
+            normals[self._space.edge_functions(self.lines[0][0].edge)] = 0.0
         self.stabilizer = Stabilizer(term, self.table, surface.points, normals)
         if self.contact is not None:
             self.contact.area = self.stabilizer.before.area
+
+    @property
+    def conservative(self) -> bool:
+        """Whether all forces have an energy, so that descent can be asked for."""
+        return self.stabilizer is None or not self.stabilizer.projected
 
     @property
     def multipliers(self) -> int:

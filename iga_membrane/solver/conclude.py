@@ -91,7 +91,7 @@ def conclude(
         assert verdict is not None
         inside = volume(assembly, surface)
         status, message = _judge(scene, verdict, checked, inside)
-        if assembly.contact is not None:
+        if assembly.contact is not None and scene.line_inside is None:
             objection = _contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
@@ -268,7 +268,7 @@ def _contact(
 ) -> dict[str, Any]:
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
-    if assembly.contact is not None:
+    if assembly.contact is not None and scene.line_inside is None:
         return _footing(scene, assembly, result, found, checked)
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if line is None:

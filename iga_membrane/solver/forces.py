@@ -20,7 +20,8 @@ from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..splines import points_of
 from ..surface.surface import Surface
-from ..terms import BodyDensity
+from ..terms import BodyDensity, SphereContactLine
+from ..terms.variations import element_points, forces
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
 
@@ -72,6 +73,8 @@ def pull_on_sphere(assembly: Assembly, surface: Surface, multipliers: Array) -> 
     """Force on the sphere that carries the membrane's line."""
     (term, edge), body = assembly.lines[0], assembly.density(multipliers)
     points = surface.points
+    if isinstance(term, SphereContactLine) and term.covered:
+        return _pull_through(assembly, surface, term.edge)
     moment = term.energy(edge, points, 0.0, BodyDensity(1.0))
     x, dx = edge.values @ points[edge.functions], edge.d @ points[edge.functions]
     # vector area of the cap, and int z n dA: its horizontal parts by Stokes' theorem
@@ -89,6 +92,19 @@ def pull_on_sphere(assembly: Assembly, surface: Surface, multipliers: Array) -> 
         total[i] -= assembly.work(surface, multipliers, along * np.eye(3)[i])
     whole = assembly.whole
     return Pull(whole(total), whole(pressure))
+
+
+def _pull_through(assembly: Assembly, surface: Surface, edge: str) -> Pull:
+    """The same where the membrane covers the sphere: its wetted part and the line are carried along
+    whole, so only the tension of the rest changes the energy."""
+    table, abscissae = assembly.table, surface.space.abscissae[..., 1]
+    _, line = surface.space.edge_place(edge)
+    fading = 1.0 - np.maximum(abscissae - line, 0.0) / (surface.space.bases[1].breaks[-1] - line)
+    along = points_of(surface.space, fading[..., None])[:, 0]
+    at = element_points(table, surface.points)
+    pull = forces(table, at, assembly.tension, BodyDensity())
+    total = -np.einsum("eai,ea->i", pull, along[table.functions])
+    return Pull(assembly.whole(total), np.zeros(3))
 
 
 def volume_over_cone(line: ContactLine, solid: Sphere) -> float:
@@ -123,7 +139,7 @@ def particle_forces(
     if scene.kind != "liquid_sheet" or not isinstance(particle, Sphere):
         return ()
     pull = pull_on_sphere(assembly, surface, multipliers)
-    line = contact_line(surface, solid=scale.local_sphere(particle))
+    line = contact_line(surface, scene.line_inside or "xi2=0", solid=scale.local_sphere(particle))
     up, g, rho = np.array([0.0, 0.0, 1.0]), scene.particle_pull, scene.liquid_density
     pressed = pull.pressure * scale.force
     if g and not assembly.body.gradient[2]:

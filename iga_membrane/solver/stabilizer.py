@@ -14,36 +14,38 @@ from ..terms.variations import ElementPoints, element_points
 class Stabilizer:
     """Holds a membrane near the metric that it had at the end of the last load step.
 
-    Projected, it sees only the displacements of the control points along their tangent planes of
-    that state, ``y = X + (1 - n n) (x - X)``, so its forces have no part along the normals.
+    Projected, only the parts of its forces along the tangent planes at the control points act.
+    These forces have no energy; their tangent keeps the symmetric part along the tangent planes.
 
     Parameters
     ----------
     term : its parameter.
     table : functions at the quadrature points.
-    points : (count, 3) control points of the last load step, with their normals (count, 3).
+    points : (count, 3) control points of the last load step, with their normals (count, 3); a
+        normal of 0 leaves the force as it is.
 
     Attributes
     ----------
     before : the metric of that state.
+    projected : whether the forces are projected.
     """
 
     def __init__(self, term: Stabilization, table: Table, points: Array, normals: Array) -> None:
-        self._mu, self._table, self._start = term.mu, table, points
-        self._normals = normals if term.projected else np.zeros_like(normals)
+        self._mu, self._table, self._normals = term.mu, table, normals
+        self.projected = term.projected
         self.before = stable.PreviousMetric.of(table, element_points(table, points))
 
     def energy(self, points: Array) -> float:
-        """Energy of a state."""
-        return stable.energy(self._mu, self.before, self._seen(points))
+        """Energy of a state, of forces that are not projected."""
+        return stable.energy(self._mu, self.before, self._at(points))
 
     def forces(self, points: Array) -> Array:
-        """(elements, local, 3) derivative by local control points."""
-        full = stable.forces(self._mu, self._table, self.before, self._seen(points))
+        """(elements, local, 3) derivative by local control points, projected if asked for."""
+        full = stable.forces(self._mu, self._table, self.before, self._at(points))
         return self._tangential(full, self._table.functions)
 
     def hessian(self, points: Array, rows: Table, columns: Index, directions: Array) -> Array:
-        """(elements, rows, rows) second derivative.
+        """(elements, rows, rows) tangent.
 
         Parameters
         ----------
@@ -51,13 +53,13 @@ class Stabilizer:
         directions : (elements, rows, 3).
         """
         along = self._tangential(directions, self._table.functions[:, columns])
-        return stable.hessian(self._mu, rows, self.before, self._seen(points), along)
+        return stable.hessian(self._mu, rows, self.before, self._at(points), along)
 
-    def _seen(self, points: Array) -> ElementPoints:
-        moved = points - self._start
-        normal = np.einsum("ki,ki->k", moved, self._normals)[:, None] * self._normals
-        return element_points(self._table, points - normal)
+    def _at(self, points: Array) -> ElementPoints:
+        return element_points(self._table, points)
 
     def _tangential(self, vectors: Array, functions: Index) -> Array:
+        if not self.projected:
+            return vectors
         n = self._normals[functions]
         return np.asarray(vectors - np.einsum("eai,eai->ea", vectors, n)[..., None] * n)
