@@ -26,6 +26,7 @@ from ..terms import (
 from .foot import Question, foot_of, rim_radius, with_rim
 from .liquid import Discretization, Liquid
 from .scene import FreeEdge, Ramp, Scene
+from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
 HOLDS = ("none", "x", "xy", "xyz")
 
@@ -41,6 +42,7 @@ def sessile_droplet(
     start: Surface | str | None = None,
     penalty: float | None = None,
     penetration_tolerance: float = 1e-2,
+    membrane: WholeMembrane | None = None,
 ) -> Scene:
     """Droplet of a volume on a plane, on top of a sphere, or on asperities.
 
@@ -62,6 +64,8 @@ def sessile_droplet(
         units of tension over squared length, length that of a ball of the volume.
     penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
         that exact contact leaves at most and beyond which a state is no success.
+    membrane : the paper's formulation, with its own penalty, instead of a contact line as the
+        membrane's edge; on a plane, below 180 degrees.
 
     Raises
     ------
@@ -129,6 +133,8 @@ def sessile_droplet(
         description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=_hints(substrate, bond, sector),
     )
+    if membrane is not None:
+        return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
     if not built.tangent:
         return scene
 

@@ -30,6 +30,7 @@ from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension,
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import FreeEdge, Ramp, Scene
 from .start import check_net, funnel
+from .whole_membrane import WholeMembrane, sheet_with_wetted_part
 
 BOUNDARIES = ("square", "circle")
 
@@ -46,6 +47,7 @@ def liquid_sheet(
     liquid_weight: bool = False,
     discretization: Discretization | None = None,
     start: Surface | None = None,
+    membrane: WholeMembrane | None = None,
 ) -> Scene:
     """Sheet pinned on a rim in z = 0; without a particle a film or a cap.
 
@@ -59,6 +61,8 @@ def liquid_sheet(
     volume : signed liquid volume below z = 0 less the wetted cap.
     liquid_weight : whether the pressure along the sheet is ``p0 - rho g z``.
     start : a surface of the same space to start from; it also chooses among several equilibria.
+    membrane : the paper's formulation, which covers the wetted part of the particle too, instead
+        of a contact line as the sheet's edge; without pressure, volume and weight of the liquid.
 
     Raises
     ------
@@ -79,6 +83,20 @@ def liquid_sheet(
     if tangent and (boundary == "square" or (sector.model in ("full", "half") and not mesh.model)):
         raise SceneError(
             "particle.contact_angle = 180: not available yet with a square rim or off the axis"
+        )
+    described = _describe(
+        particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
+    )
+    if membrane is not None:
+        if particle is None or pressure or volume is not None or liquid_weight or start is not None:
+            raise SceneError(
+                'solver.contact_line = "line_load": not available yet for a sheet without a '
+                "particle, with pressure, volume or the liquid's weight, or from a start"
+            )
+        _check_place(particle, size, boundary)
+        mesh = (discretization or Discretization()).mesh(degree=3, elements=18)
+        return sheet_with_wetted_part(
+            particle, size, boundary, liquid, gravity, mesh, sector, membrane, described
         )
     terms: list[Term] = [SurfaceTension(gamma)]
     supports: list[Support] = [sector]
@@ -145,9 +163,7 @@ def liquid_sheet(
         kind="liquid_sheet",
         particle_pull=gravity,
         liquid_density=liquid.density,
-        description=_describe(
-            particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
-        ),
+        description=described,
     )
     if particle is None or not tangent:
         return scene

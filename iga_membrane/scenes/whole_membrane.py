@@ -35,9 +35,9 @@ from ..terms import (
     SurfaceTension,
     Term,
 )
-from .liquid import Mesh
+from .liquid import Discretization, Liquid, Mesh
 from .scene import Ramp, Scene
-from .start import Pancake, funnel
+from .start import Pancake, funnel, least_energy_pancake
 
 EASY = 150.0
 """Contact angle of the first load step at most."""
@@ -78,7 +78,8 @@ def sheet_with_wetted_part(
     particle: Sphere,
     size: float,
     boundary: str,
-    gamma: float,
+    liquid: Liquid,
+    gravity: float,
     mesh: Mesh,
     sector: Sector,
     how: WholeMembrane,
@@ -88,7 +89,8 @@ def sheet_with_wetted_part(
     x, y, _ = particle.center
     if x or y:
         raise SceneError('solver.contact_line = "line_load": not available yet off the axis')
-    _check(mesh, sector)
+    _check(mesh, sector, particle.contact_angle)
+    gamma = liquid.surface_tension
     kink = _kink(mesh.elements)
     space = ring_space(
         mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=boundary == "square", kink=kink
@@ -112,23 +114,40 @@ def sheet_with_wetted_part(
         motion="cartesian",
         substrate=particle,
         kind="liquid_sheet",
-        description=description,
+        particle_pull=gravity,
+        liquid_density=liquid.density,
+        description=_described(description, mesh, how),
     )
     return _stepped(scene, "particle[0].contact_angle", first, particle, line, how)
 
 
 def droplet_with_wetted_part(
-    plane: Plane, scene: Scene, mesh: Mesh, pancake: Pancake, how: WholeMembrane
+    scene: Scene,
+    asked: Discretization,
+    bond: float,
+    law: Contact,
+    start: object,
+    how: WholeMembrane,
 ) -> Scene:
     """The paper's formulation of a droplet on a level plane.
 
     Parameters
     ----------
     scene : the same droplet with a contact line as its edge.
-    pancake : dimensionless start at the first contact angle.
+    bond : Bond number of gravity towards the plane.
+    law, start : what else was asked for, of which there is nothing here.
     """
-    _check(mesh, scene.sector)
+    plane = scene.substrate
+    if not isinstance(plane, Plane) or law.penalty is not None or start is not None:
+        raise SceneError(
+            'solver.contact_line = "line_load": not available yet on spheres, from a start, or '
+            "with a penalty besides its own"
+        )
+    mesh = asked.mesh(degree=3, elements=24)
+    _check(mesh, scene.sector, plane.contact_angle)
     scale, gamma = scene.units, scene.units.tension
+    angle = max(EASY, plane.contact_angle)
+    pancake = least_energy_pancake(angle, bond, 4.0 * np.pi / 3.0)
     kink = _kink(mesh.elements)
     space = drop_space(mesh.space, mesh.degree, mesh.elements, kink=kink)
     local = _droplet_start(space, pancake)
@@ -148,13 +167,36 @@ def droplet_with_wetted_part(
         motion="cartesian",
         substrate=plane,
         kind=scene.kind,
-        description=scene.description,
+        description=_described(scene.description, mesh, how),
         warnings=scene.warnings,
     )
     return _stepped(whole, "substrate.contact_angle", first, plane, line, how)
 
 
-def _check(mesh: Mesh, sector: Sector) -> None:
+def _described(description: Mapping[str, Any], mesh: Mesh, how: WholeMembrane) -> dict[str, Any]:
+    """A description with the formulation's own mesh and solver table."""
+    model = description["discretization"]["model"]
+    solver = {
+        "motion": "cartesian",
+        "stabilization": how.stabilization,
+        "contact": "penalty",
+        "penalty": how.penalty,
+        "penetration_tolerance": how.penetration_tolerance,
+        "contact_line": "line_load",
+    }
+    return dict(description) | {"discretization": mesh.described(model), "solver": solver}
+
+
+def _check(mesh: Mesh, sector: Sector, contact_angle: float) -> None:
+    if contact_angle >= 180.0:
+        raise SceneError(
+            f"contact_angle = {contact_angle:g}: there is no contact line at 180 degrees, so no "
+            'solver.contact_line = "line_load"; choose an angle < 180'
+        )
+    if mesh.elements < 6:
+        raise SceneError(
+            f"discretization.elements = {mesh.elements}: a membrane with its wetted part needs >= 6"
+        )
     if mesh.space != "bspline":
         raise SceneError(
             f'discretization.space = "{mesh.space}": not available yet with solver.contact_line = '

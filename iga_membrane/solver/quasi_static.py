@@ -15,12 +15,15 @@ from .status import Status
 
 HALVINGS = 6
 """How often a load step that fails is halved."""
-RELAXED = 1e-6
+RELAXED = 1e-7
 """Displacement along the normals (over the length) of a step at the last load that ends them."""
 RELAXATIONS = 100
 """Steps at the last load at most."""
-WEAK = 1e-3
-"""Stabilization over tension with which stability is judged."""
+CREPT = 1e-4
+"""Displacement of the last of them from which the state is no equilibrium yet."""
+WEAK = 1e-2
+"""Stabilization over tension with which stability is judged: more than the discrete membrane's own
+stiffness in its plane, which may be negative, and little against that of the contact line."""
 
 
 def quasi_static(
@@ -67,8 +70,15 @@ def quasi_static(
         moved = tried.surface.points - result.surface.points
         result = tried
         normals = assembly.spines.on(result.surface).directions[: len(moved)]
-        if np.abs(np.einsum("ki,ki->k", moved, normals)).max() <= RELAXED:
+        crept = float(np.abs(np.einsum("ki,ki->k", moved, normals)).max())
+        if crept <= RELAXED:
             break
+    if crept > CREPT:
+        result.status = Status.STALLED
+        result.message = (
+            f"the stabilization has not relaxed in {RELAXATIONS} steps at the last load (the last "
+            f"one moved the membrane by {crept:.1e} lengths): lower solver.stabilization"
+        )
     assembly.begin_step(result.surface, Stabilization(WEAK * assembly.tension, projected=True))
     return result, steps
 
