@@ -19,7 +19,7 @@ from .surface import Surface
 
 
 class Cartesian(Spines):
-    """Motion of a ring patch with three unknowns per control point.
+    """Motion with three unknowns per control point, of a ring patch or of a whole open one.
 
     Control points at a pole keep their one unknown along its normal. Points on a mirror plane stay
     in it; images across an odd number of planes turn the other way round the ring.
@@ -29,17 +29,18 @@ class Cartesian(Spines):
         super().__init__(surface, supports)
         space = surface.space
         ring = space.bases[0]
-        if not ring.periodic or any(isinstance(s, Sliding) for s in supports):
-            raise SceneError(
-                'solver.motion = "cartesian": needs a ring patch whose contact line lies inside it'
-            )
         copies = next((s.copies for s in supports if isinstance(s, Sector)), 1)
+        if any(isinstance(s, Sliding) for s in supports) or (copies > 1 and not ring.periodic):
+            raise SceneError(
+                'solver.motion = "cartesian": needs a ring or a whole patch, any contact line '
+                "inside it"
+            )
         sector = (ring.breaks[-1] - ring.breaks[0]) / copies
         turn = np.broadcast_to((ring.abscissae / sector)[:, None], space.net_shape)
         free = np.ones(space.net_shape)
         free[:, space.net_shape[1] - space.joined_rings :] = 0.0
         on_mirror = (np.abs(turn - np.round(turn)) < 1e-9) & (copies > 1)
-        sense = np.where(np.floor(turn) % 2 == 0, 1.0, -1.0) if copies > 1 else free
+        sense = np.where(np.floor(turn) % 2 == 0, 1.0, -1.0) if copies > 1 else 1.0
         around = np.where(on_mirror, 0.0, sense * free)
         count = space.count
         self._sense = self._scalar(around)
