@@ -25,6 +25,7 @@ from ..terms import (
     SphereContactLine,
     SurfaceTension,
     Term,
+    TrimmedContactLine,
 )
 
 
@@ -206,7 +207,7 @@ class Scene:
     def meridian_grading(self) -> Grading | None:
         """The grading of a ring patch; other patches, and membranes that lie on a solid, keep
         their parametrization."""
-        lying = any(isinstance(t, Contact) for t in self.terms)
+        lying = any(isinstance(t, (Contact, TrimmedContactLine)) for t in self.terms)
         regular = self.surface.space.bases[0].periodic and not lying
         return self.grading if regular else None
 

@@ -9,6 +9,7 @@ from .sphere_wetting import SphereContactLine
 from .stabilization import Stabilization
 from .tension import SurfaceTension
 from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term
+from .trimmed import TrimmedContactLine
 from .volume import Centroid, Pressure, Volume
 
 __all__ = [
@@ -29,5 +30,6 @@ __all__ = [
     "Stabilization",
     "SurfaceTension",
     "Term",
+    "TrimmedContactLine",
     "Volume",
 ]
