@@ -116,6 +116,10 @@ def sessile_droplet(
             hold=hold,
         )
 
+    # at 180 degrees on a plane there is nothing to start from without gravity
+    has_way = isinstance(substrate, Sphere) or (
+        isinstance(substrate, Plane) and substrate.contact_angle < 180.0
+    )
     described = _describe(substrate, volume, liquid, acceleration, hold)
     scene = Scene(
         built.surface,
@@ -124,9 +128,7 @@ def sessile_droplet(
         scale=scale,
         grading=built.grading,
         directions=built.directions,
-        ramp=Ramp("gravity.acceleration", (0.0, pull), at)
-        if bond.any() and isinstance(substrate, (Plane, Sphere)) and not built.tangent
-        else None,
+        ramp=Ramp("gravity.acceleration", (0.0, pull), at) if has_way and bond.any() else None,
         substrate=substrate,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
