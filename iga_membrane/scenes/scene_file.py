@@ -21,6 +21,7 @@ from .asperities import STARTS
 from .cell import asperity_cell
 from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
+from .foot import CONTACT_LINES
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Ramp, Scene
 from .scene_keys import KEYS, check_numbers, later, membrane_of, table_of
@@ -210,6 +211,7 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
         shape=cell.get("shape", "square"),
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
         discretization=Discretization(**tables["discretization"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
         **_contact(tables["solver"]),
     )
 
@@ -221,6 +223,7 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
         if field.split(".")[1] not in table:
             raise SceneError(f"{field}: missing; a sessile droplet needs it")
+    membrane = membrane_of(tables["solver"])
     return sessile_droplet(
         _substrate(substrate),
         volume=liquid["volume"],
@@ -229,7 +232,10 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
         start=_start(tables["solver"]),
-        membrane=membrane_of(tables["solver"]),
+        contact_line="auto"
+        if membrane is not None
+        else tables["solver"].get("contact_line", "auto"),
+        membrane=membrane,
         **_contact(tables["solver"]),
     )
 
@@ -313,6 +319,8 @@ def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
 
 def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, sheet = tables["liquid"], tables["sheet"]
+    if tables["solver"].get("contact_line") == "trimmed":
+        raise later('solver.contact_line = "trimmed" on a sheet')
     particles = data.get("particle", [])
     if len(particles) > 1:
         raise later(f"a sheet with {len(particles)} [[particle]] tables")
@@ -384,7 +392,7 @@ def _solver(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
     for key, allowed in words.items():
         if key in table:
             choice(f"solver.{key}", table[key], allowed)
-    if table.get("contact_line", "auto") not in ("auto", "conforming", "line_load"):
+    if table.get("contact_line", "auto") not in (*CONTACT_LINES, "line_load"):
         raise later(f'solver.contact_line = "{table["contact_line"]}"')
     if kind not in ("sessile_droplet", "liquid_sheet") and membrane_of(table) is not None:
         raise later(f'solver.contact_line = "line_load" in scene = "{kind}"')

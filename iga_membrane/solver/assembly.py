@@ -12,7 +12,7 @@ from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, LineTable, Table
 from ..surface.cartesian import Cartesian
-from ..surface.motion import Spines
+from ..surface.motion import Motion, Spines
 from ..surface.sector import mirrors, sector_elements, sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
@@ -225,6 +225,15 @@ class Assembly:
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
 
+    def energy(self, surface: Surface) -> float:
+        """Energy of the liquid and its contact, without what ties the control points."""
+        total = self.energies(surface).total
+        return (
+            total
+            if self.trim is None
+            else total - self.tension * self.trim.ties.energy(surface.points)
+        )
+
     def near_contact(self, surface: Surface, displacement: Array) -> float:
         """Largest displacement over the contact length, of control points near the solid."""
         if self.contact is not None:
@@ -235,6 +244,17 @@ class Assembly:
             return 0.0
         moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)
         return float(moved.max(initial=0.0)) / length
+
+    def relaxed(self, surface: Surface, motion: Motion) -> Surface:
+        """The same liquid; what lies inside a solid, and depends on nothing, smoothed."""
+        if self.trim is None:
+            return surface
+        self.trim.hold(surface.points)
+        heights = np.einsum("ki,ki->k", surface.points, motion.directions[: len(surface.points)])
+        level = np.zeros(self.size + 1)
+        level[motion.unknowns[: len(heights)]] = heights
+        step = self.trim.ties.extended(level[:-1]) - level[:-1]
+        return surface.moved(surface.points + motion.displacement(step))
 
     def extended(self, step: Array) -> Array:
         """A step in which unknowns that nothing outside a solid depends on follow the others."""
@@ -320,8 +340,8 @@ class Assembly:
         if self.trim is None:
             return [(rows, at.part(elements)) for elements, rows in self._groups]
         outside = self.trim.outside(points)
-        cut = outside.area
-        return [(self.table.weighted(outside.share), at), (cut, vary.element_points(cut, points))]
+        whole, cut = (self.table.weighted(outside.share), at), outside.area
+        return [whole, (cut, vary.element_points(cut, points))] if len(cut.functions) else [whole]
 
     def _integrals(
         self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]
@@ -361,8 +381,6 @@ class Assembly:
         start = process_time()
         points = surface.points
         at = vary.element_points(self.table, points)
-        if self.trim is not None:
-            self.trim.hold(points)
         _, constraints = self._values(points, at)
         gradient, columns, scale = self._first_order(points, directions, at, multipliers)
         matrix = self._second_order(points, directions, at, multipliers)

@@ -41,10 +41,10 @@ class Tolerance:
     force : vertical balance of the drop; sideways : horizontal one on asperities, where the
         membrane's given directions follow shifts only approximately.
     line : the same from the spline's own contact angle.
-    angle : error of the mean cosine of the contact angle.
+    angle : error of the mean cosine of the contact angle; where a membrane passes through spheres,
+        on each of them.
     penetration : depth below a plane over the scene's length.
     indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
-    mean_angle : error in degrees of the mean contact angle on a sphere the membrane passes through.
     """
 
     residual: float = 1e-3
@@ -55,7 +55,6 @@ class Tolerance:
     angle: float = 2e-2
     penetration: float = 1e-6
     indentation: float = 1e-2
-    mean_angle: float = 1.0
 
 
 TOLERANCE = Tolerance()
@@ -368,15 +367,15 @@ def _contact_objection(
             "discretization.elements",
         )
     if lines:
-        worst = int(np.abs(feet.angles - _young(scene, feet)).argmax()) if len(feet.which) else -1
-        off = float(feet.angles[worst] - _young(scene, feet)[worst]) if worst >= 0 else 0.0
-        if abs(off) > TOLERANCE.mean_angle:
+        off = np.cos(np.radians(feet.angles)) - np.cos(np.radians(_young(scene, feet)))
+        worst = int(np.abs(off).argmax())
+        if abs(off[worst]) > TOLERANCE.angle:
             return (
                 Status.UNDERRESOLVED,
                 None,
-                f"the mean contact angle on sphere {int(feet.which[worst])} is off by {off:.1f} "
-                f"degrees ({TOLERANCE.mean_angle:g} is allowed): take more "
-                "discretization.elements",
+                f"the mean contact angle on sphere {int(feet.which[worst])} is "
+                f"{feet.angles[worst]:.1f} degrees instead of "
+                f"{_young(scene, feet)[worst]:g}: take more discretization.elements",
             )
     inside = engulfed(scene, assembly, surface)
     if inside:
