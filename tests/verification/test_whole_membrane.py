@@ -25,13 +25,12 @@ SLOW = [pytest.param(angle, marks=pytest.mark.slow) for angle in (120.0, 90.0, 3
 @pytest.mark.parametrize("angle", [150.0, *SLOW])
 def test_sheet_on_a_particle(angle):
     exact = iga.solve(sheet(angle)).measures
-    found = iga.solve(sheet(angle, membrane=iga.WholeMembrane(load_steps=12), elements=18))
-    assert found.measures["phi_deg"] == pytest.approx(exact["phi_deg"], rel=1e-3)
-    assert found.measures["F_CL"] == pytest.approx(exact["F_CL"], rel=4e-3)
-    for name in ("energy", "A_LG", "A_wet", "V_liq", "contact_radius", "V_cap"):
-        assert found.measures[name] == pytest.approx(exact[name], abs=4e-3), name
+    membrane = iga.WholeMembrane(load_steps=12, penalty=1e5)
+    found = iga.solve(sheet(angle, membrane=membrane, elements=18))
+    for name in ("phi_deg", "F_CL", "energy", "A_LG", "A_wet", "V_liq", "contact_radius", "V_cap"):
+        assert found.measures[name] == pytest.approx(exact[name], rel=1e-3), name
     # tension on the wetted cap presses with 2 gamma / r
-    assert found.audit.penetration == pytest.approx(2e-4, rel=0.7)
+    assert 1e-5 < found.audit.penetration < 1e-4
     assert len(found.load_steps) > 13
 
 
