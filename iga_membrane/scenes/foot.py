@@ -12,7 +12,7 @@ from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading, points_of
 from ..surface.ring import axisymmetric, drop_space
-from ..surface.supports import Fixed, Sector, Sliding, Support
+from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
     Contact,
@@ -131,7 +131,13 @@ def _on_an_area(parts: Question) -> Foot:
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
         surface = surface.moved(parts.start.points)
-    foot = Foot(surface, Sector(model), mesh, [parts.law], directions=skin.directions)
+    sector = Sector(model)
+    free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
+    # on a plane every place is as good, and the centroid is held
+    # contact lines lie in the part of the membrane that takes no part in shifts
+    above = 0.0 if least == 180.0 else 2.0 * largest_radius(local)
+    supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
+    foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
     return _through(foot, parts, skin.pressure)
@@ -154,6 +160,11 @@ def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
     law = (pressure + 2.0 / r) / sunk * scale.tension / scale.length**2
     below = Contact(with_angle(substrate, 180.0), float(law), 1.0)
     return replace(foot, terms=[line], predictor=[below])
+
+
+def largest_radius(solid: AnySolid) -> float:
+    """Of spheres; 0 for a plane."""
+    return float(np.max(solid.radii if isinstance(solid, Spheres) else getattr(solid, "radius", 0)))
 
 
 PREDICTABLE = 135.0, 175.0

@@ -69,6 +69,7 @@ class System:
     constraints : (m,) prescribed integrals minus their values.
     scale : norm of the absolute force contributions, against which a residual is judged.
     matrix : Hessian of the energy minus multipliers times constraints.
+    shifts : how many of the last unknowns are shifts.
     """
 
     gradient: Array
@@ -76,6 +77,7 @@ class System:
     constraints: Array
     scale: float
     matrix: Matrix
+    shifts: int
 
     def residual(self, multipliers: Array) -> Array:
         """(n,) out-of-balance forces."""
@@ -191,12 +193,18 @@ class Assembly:
 
     @property
     def multipliers(self) -> int:
-        """Number of multipliers: of the constraints, then of the edges held on solids."""
-        return len(self._held) + int(self.spines.held.max(initial=-1)) + 1
+        """Number of multipliers: of the constraints, then of the edges held on solids, then of the
+        shifts' gauge."""
+        return len(self._held) + self._gap_count + len(self.spines.shifts)
+
+    @property
+    def _gap_count(self) -> int:
+        return int(self.spines.held.max(initial=-1)) + 1
 
     def line_load(self, multipliers: Array) -> Array:
         """(count,) coefficients of the load with which a curved solid holds its edge."""
-        loads = np.append(multipliers[len(self._held) :], 0.0)
+        first = len(self._held)
+        loads = np.append(multipliers[first : first + self._gap_count], 0.0)
         return loads[self.spines.held[self.spines.second]]
 
     @property
@@ -340,7 +348,7 @@ class Assembly:
         if self.trim is None:
             return [(rows, at.part(elements)) for elements, rows in self._groups]
         outside = self.trim.outside(points)
-        whole, cut = (self.table.weighted(outside.share), at), outside.area
+        whole, cut = (self._shifted_table.weighted(outside.share), at), outside.area
         return [whole, (cut, vary.element_points(cut, points))] if len(cut.functions) else [whole]
 
     def _integrals(
@@ -370,11 +378,14 @@ class Assembly:
             np.bincount(
                 self._held_numbers(edge).ravel() + 1,
                 gap.values(edge, points).ravel(),
-                self.multipliers - len(self._held) + 1,
+                self._gap_count + 1,
             )[1:]
             for gap, edge in self._gaps
         ]
-        return interface + body, np.concatenate([np.array(held) - self._targets, *gaps])
+        # every step keeps to the gauge, which is linear
+        gauge = np.zeros(len(self.spines.shifts))
+        missing = np.array(held) - self._targets
+        return interface + body, np.concatenate([missing, *gaps, gauge])
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
         """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
@@ -386,7 +397,7 @@ class Assembly:
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
-        return System(gradient, columns, constraints, size, matrix)
+        return System(gradient, columns, constraints, size, matrix, len(self.spines.shifts))
 
     def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
         """Gradients of the energy (n,) and of the constraints (n, m), without the Hessian."""
@@ -400,6 +411,7 @@ class Assembly:
         """Gradient (n,), gradients of the constraints (n, m), absolute contributions (n,)."""
         gradient, scale = np.zeros(self.size), np.zeros(self.size)
         columns = np.zeros((self.size, self.multipliers))
+        columns[:, self.multipliers - len(self.spines.shifts) :] = self.spines.gauge
         for rows, part in self._parts(points, at):
             work = _along(vary.forces(rows, part, self.tension, self.body), directions, rows)
             gradient += self._gather(work, rows.functions)
@@ -422,13 +434,13 @@ class Assembly:
             gradient += self._gather(work, functions)
             gradient[self.trim.ties.idle], columns[self.trim.ties.idle] = 0.0, 0.0
         if self.contact is not None:
-            push = self.contact.forces(self.contact.touch(points))
-            rows = self._by_rows(self.contact.table)
-            work = _along(push[:, self._columns], directions, rows)
+            rows = self._contact_rows
+            push = self.contact.forces(self.contact.touch(points), rows)
+            work = _along(push, directions, rows)
             gradient += self._gather(work, rows.functions)
             scale += self._gather(np.abs(work), rows.functions)
         if self.stabilizer is not None:
-            rows, hold = self._by_rows(self.table), self.stabilizer.forces(points)
+            rows, hold = self._wide, self.stabilizer.forces(points)
             work = _along(hold[:, self._columns], directions, rows)
             gradient += self._gather(work, rows.functions)
         for term, edge in self.lines:
@@ -467,12 +479,11 @@ class Assembly:
         if self.trim is not None:
             self._add_trim(matrix, points, directions, body)
         if self.contact is not None:
-            touch = self.contact.touch(points)
-            rows = self._by_rows(self.contact.table)
-            near, blocks = self.contact.hessian(touch, directions, rows)
+            rows = self._contact_rows
+            near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
             matrix.add(self.spines.unknowns[rows.functions[near]], blocks)
         if self.stabilizer is not None:
-            rows = self._by_rows(self.table)
+            rows = self._wide
             along = directions[rows.functions]
             blocks = self.stabilizer.hessian(points, rows, self._columns, along)
             matrix.add(self.spines.unknowns[rows.functions], blocks)
@@ -527,21 +538,26 @@ class Assembly:
     def _row_groups(self) -> list[tuple[slice | Index, Table]]:
         """Elements and their tables by rows of the motion; elements at a curved solid have more
         rows than functions, and all have with three unknowns per control point."""
-        table, spare = self.table, len(self.spines.points) - 1
+        table, spare = self.table, self.spines.spare
+        if len(self.spines.shifts):
+            shifted = (self.spines.share[table.functions] != 0.0).any(axis=1)
+            moving, still = np.flatnonzero(shifted), np.flatnonzero(~shifted)
+            foot = [(still, table.part(still))] if len(still) else []
+            return [*foot, (moving, self._with_shifts(table.part(moving)))]
         touching = np.zeros(len(table.functions), bool)
         for extra in self.spines.extra:
             touching |= (extra[table.functions] < spare).any(axis=1)
         if not touching.any():
             return [(slice(None), table)]
         if touching.all():
-            return [(slice(None), self._by_rows(table))]
+            return [(slice(None), self._wide)]
         near, rest = np.flatnonzero(touching), np.flatnonzero(~touching)
         edge = table.part(near)
         return [(rest, table.part(rest)), (near, edge.with_columns(*self._extra(edge.functions)))]
 
     def _extra(self, functions: Index) -> tuple[Index, Index]:
         """Which local functions have further rows of the motion, and those rows."""
-        spare = len(self.spines.points) - 1
+        spare = self.spines.spare
         columns, rows = [], []
         for extra in self.spines.extra:
             more = extra[functions]
@@ -550,20 +566,32 @@ class Assembly:
             rows.append(more[:, own])
         return np.concatenate(columns), np.hstack(rows)
 
-    def _by_rows(self, table: Table) -> Table:
-        """A table of all elements by rows of the motion, where it has three for every point; it
-        is then that of the quadrature points, where a penalty acts too."""
-        return self._wide if isinstance(self.spines, Cartesian) else table
-
     @cached_property
     def _wide(self) -> Table:
+        """The table with three rows of the motion for every control point."""
         return self.table.with_columns(*self._extra(self.table.functions))
 
     @property
     def _columns(self) -> Index:
-        """Which function belongs to each row of :meth:`_by_rows`."""
-        local = self.table.functions.shape[1]
-        return np.tile(np.arange(local), 3 if isinstance(self.spines, Cartesian) else 1)
+        """Which function belongs to each row of :attr:`_wide`."""
+        return np.tile(np.arange(self.table.functions.shape[1]), 3)
+
+    def _with_shifts(self, table: Table) -> Table:
+        if not len(self.spines.shifts):
+            return table
+        rows = self.spines.spare + 1 + np.arange(len(self.spines.shifts))
+        return table.with_field(self.spines.share, rows.tolist())
+
+    @cached_property
+    def _shifted_table(self) -> Table:
+        return self._with_shifts(self.table)
+
+    @cached_property
+    def _contact_rows(self) -> Table:
+        assert self.contact is not None
+        if isinstance(self.spines, Cartesian):
+            return self._wide  # a penalty acts at the quadrature points
+        return self._with_shifts(self.contact.table)
 
     def _edge(self, edge: str) -> EdgeTable:
         return self._space.edge_table(edge, self.points[0], self._ring_elements)
@@ -590,14 +618,16 @@ class Assembly:
             return Matrix(self.size, self._pattern)
         if self._tied is not self.trim.ties.across:
             self._tied = self.trim.ties.across
-            groups = [self.spines.unknowns[f] for f in (self.table.functions, self._tied[0])]
-            self._pattern = SparsePattern(self.size, groups)
+            tables = self._shifted_table.functions, self._tied[0]
+            groups = [self.spines.unknowns[functions] for functions in tables]
+            self._pattern = SparsePattern(self.size - len(self.spines.shifts), groups)
         return Matrix(self.size, self._pattern)
 
     @cached_property
     def _pattern(self) -> SparsePattern:
         return SparsePattern(
-            self.size, [self.spines.unknowns[rows.functions] for _, rows in self._groups]
+            self.size - len(self.spines.shifts),
+            [self.spines.unknowns[rows.functions] for _, rows in self._groups],
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Plane, Sphere
+from ..solids import Plane, Sphere, SphereLattice
 from ..surface.surface import Surface
 from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
@@ -39,7 +39,7 @@ class Tolerance:
     residual : weak form on doubled quadrature.
     volume : relative error of the volume.
     force : vertical balance of the drop; sideways : horizontal one on asperities, where the
-        membrane's given directions follow shifts only approximately.
+        directions of the forces are those of a few contact points on each.
     line : the same from the spline's own contact angle.
     angle : error of the mean cosine of the contact angle; where a membrane passes through spheres,
         on each of them.
@@ -108,6 +108,8 @@ def conclude(
     if verdict is None and status is not Status.INTERRUPTED and _reaches_boundary(scene, surface):
         status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
         message = "the contact line reaches the rim: no sheet is left between them"
+    if status not in (Status.CONVERGED_STABLE, Status.INTERRUPTED):
+        message += _overload(scene, assembly, multipliers)
     scale = scene.units
     found = measures(scene, assembly, surface, multipliers)
     total = process_time() - started - assembly.compile_seconds
@@ -161,6 +163,27 @@ def _too_soft(scene: Scene, assembly: Assembly, multipliers: Array) -> tuple[Sta
     return Status.PENETRATION, (
         f"a penalty of {law.penalty:.3g} gives way by {depth:.1e} radii, {law.depth:.0e} is "
         "allowed: raise solver.penalty, use exact contact, or raise solver.penetration_tolerance"
+    )
+
+
+def _overload(scene: Scene, assembly: Assembly, multipliers: Array) -> str:
+    """Whether the pressure is more than a lattice carries at 180 degrees, in words.
+
+    A sphere carries at most ``(p + 2 gamma / r) pi r^2``, with the membrane at its equator, and far
+    from the droplet's rim it must carry the pressure on its cell of the lattice.
+    """
+    law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
+    if law is None or not isinstance(law.solid, SphereLattice):
+        return ""
+    disc = np.pi * law.solid.radius**2
+    most = 2.0 * assembly.tension / law.solid.radius * disc / (law.solid.area_per_sphere - disc)
+    pressure = -assembly.density(multipliers).constant
+    if not pressure > most:
+        return ""
+    unit = scene.units.pressure
+    return (
+        f"; the pressure came to {pressure * unit:.4g}, and a wide lattice of these asperities "
+        f"carries {most * unit:.4g} at most: take a smaller spacing, or less volume or gravity"
     )
 
 

@@ -10,11 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
-from ..surface.surface import Surface
-from ..terms import BodyDensity, Contact, TrimmedContactLine
+from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
@@ -91,51 +89,6 @@ def _rolls(scene: Scene) -> bool:
     return lies or (through and scene.kind == "sessile_droplet")
 
 
-CENTRED = 0.02
-"""Way that a droplet may have rolled on its mesh: farther, its horizontal balance suffers."""
-DRIFTS = 20
-"""New starts at most for a droplet that rolls to a place where it is stable."""
-
-
-def _follow_drift(
-    scene: Scene,
-    assembly: Assembly,
-    start: Surface,
-    result: NewtonResult,
-    settings: NewtonOptions,
-) -> NewtonResult:
-    """A droplet on asperities without mirror planes rolls sideways, which its given directions
-    follow only so far: start anew where it has rolled to."""
-    moved = np.zeros(3)
-    for _ in range(DRIFTS):
-        if result.status is Status.INTERRUPTED or "xy" in scene.sector.mirrored:
-            break
-        place = _centroid(scene, assembly, result.surface)
-        drift = place - _centroid(scene, assembly, start.moved(start.points + moved))
-        if result.status is None and np.linalg.norm(drift) <= CENTRED:
-            break
-        log.info("the droplet has rolled by %.3g, %.3g: new start", drift[0], drift[1])
-        moved = moved + drift
-        iterations, seconds = result.iterations, result.linear_seconds
-        assert assembly.contact is not None
-        assembly.contact.multipliers[:] = 0.0
-        result = newton(assembly, start.moved(start.points + moved), None, None, settings)
-        result.iterations = iterations + result.iterations
-        result.linear_seconds += seconds
-    return result
-
-
-def _centroid(scene: Scene, assembly: Assembly, surface: Surface) -> Array:
-    """(3,) of the liquid, along the axes that its model leaves free; height left out."""
-    inside = assembly.body_integral(surface, BodyDensity(1.0))
-    place = np.zeros(3)
-    for k, axis in enumerate("xy"):
-        if axis not in scene.sector.mirrored:
-            along = BodyDensity(0.0, tuple(float(k == i) for i in range(3)))  # type: ignore[arg-type]
-            place[k] = assembly.body_integral(surface, along) / inside
-    return place
-
-
 def _delivered(solution: Solution, on_fail: str) -> Solution:
     log.debug("%s: %s", solution.status.name, solution.message)
     if not solution.success and on_fail == "raise":
@@ -182,8 +135,6 @@ def _iterate(
         return Outcome(path.scene, path.result, path.steps, path.bracket)
     start, grading = scene.local_surface(), scene.meridian_grading
     direct = first(scene, assembly, settings)
-    if assembly.contact is not None and scene.kind == "sessile_droplet":
-        direct = _follow_drift(scene, assembly, start, direct, settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
     if direct.status is Status.INTERRUPTED or (direct.status is None and direct.index <= 0):
         return Outcome(scene, direct, steps)

@@ -101,7 +101,8 @@ class Ties:
     @cached_property
     def idle(self) -> Index:
         """Unknowns of which nothing lies outside."""
-        lonely = np.ones(self._size + 1, bool)
+        lonely = np.zeros(self._size + 1, bool)
+        lonely[self._unknowns] = True
         lonely[self._unknowns[self._held]] = False
         return np.flatnonzero(lonely[:-1])
 

@@ -54,7 +54,8 @@ class Cartesian(Spines):
         self.points = np.concatenate([np.tile(np.arange(count), 3), [0]])
         self.unknowns = np.concatenate([*rows, [-1]])
         self.held = np.full(3 * count + 1, -1)
-        self.second = np.full(count, 3 * count)
+        self.spare = 3 * count
+        self.second = np.full(count, self.spare)
         self.extra = [count + np.arange(count), 2 * count + np.arange(count)]
 
     def _scalar(self, net: Array) -> Array:
@@ -74,4 +75,4 @@ class Cartesian(Spines):
         along = along / np.where(length > 0, length, 1.0)
         around = np.cross(normals, along) * self._sense[:, None]
         rows = np.concatenate([normals, along, around, np.zeros((1, 3))])
-        return Motion(self.points, rows, self.unknowns, self.size)
+        return Motion(self.points, rows, self.unknowns, self.size, self.shifts, self.share)
