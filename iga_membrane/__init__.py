@@ -11,7 +11,7 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "errors": ("GeometryError", "OutputError", "SceneError", "SolveError"),
+    "errors": ("GeometryError", "OutputError", "SceneError", "SolveError", "StateError"),
     "splines": ("Grading", "Space", "Table", "bspline_basis", "close_pole", "lagrange_basis",
                 "line_basis", "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
     "surface.surface": ("Surface",),
@@ -37,6 +37,7 @@ _HOME = {
     "solver.status": ("Status",),
     "solver.solution": ("Solution",),
     "solver.solve": ("solve",),
+    "solver.state": ("load",),
     "solver.trace": ("Path", "trace"),
     "solver.contact_line": ("contact_line",),
     "analysis.critical": ("Crossing", "critical_value"),

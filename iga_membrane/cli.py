@@ -13,11 +13,12 @@ from pathlib import Path
 from time import process_time
 
 from . import __version__
-from .errors import GeometryError, OutputError, SceneError
+from .errors import GeometryError, OutputError, SceneError, StateError
+from .files import check_folder, previous
 from .scenes.scene_file import load_scene
 from .solver.options import SolverOptions
 from .solver.solve import solve
-from .view.export import check_folder, save
+from .view.export import save
 
 SOLVED, BAD_SCENE, FAILED, NOT_WRITABLE, INTERRUPTED = 0, 2, 3, 4, 130
 
@@ -29,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     try:
         return _solve(given)
-    except (SceneError, GeometryError) as error:
+    except (SceneError, GeometryError, StateError) as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_SCENE
     except OutputError as error:
@@ -49,14 +50,15 @@ def _solve(given: argparse.Namespace) -> int:
         from .view.picture import check_drawing
 
         check_drawing()
+    state = folder / "state.npz"
+    options = replace(SolverOptions(), **file.solver, checkpoint=state)
     with _progress() as report:
-        solution = solve(
-            file.scene, replace(SolverOptions(), **file.solver), on_fail="return", report=report
-        )
+        solution = solve(file.scene, options, on_fail="return", report=report)
     seconds = {"import": imported, **solution.cpu_seconds, "total": process_time()}
     solution = replace(solution, cpu_seconds=seconds)
     save(solution, folder / "result.json")
-    save(solution, folder / "state.npz")
+    save(solution, state)
+    previous(state).unlink(missing_ok=True)
     if given.vtu:
         save(solution, folder / "surface.vtu")
     if given.png:

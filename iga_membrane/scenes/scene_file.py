@@ -42,7 +42,7 @@ class SceneFile:
     Attributes
     ----------
     scene : what to solve.
-    solver : the solver's limits that the file sets, by the names of ``SolverOptions``.
+    solver : the solver's limits and start that the file sets, by the names of ``SolverOptions``.
     """
 
     scene: Scene
@@ -234,7 +234,7 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
 def _start(table: Mapping[str, Any]) -> str | None:
     start = table.get("start", "auto")
     if start.endswith(".npz"):
-        raise _later("solver.start from a state file")
+        return None  # the solver reads it
     choice("solver.start", start, ("auto", *STARTS))
     return None if start == "auto" else str(start)
 
@@ -389,7 +389,11 @@ def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
     for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
         if key in table:
             number(f"solver.{key}", table[key], above=0.0)
-    return {key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table}
+    limits: dict[str, Any] = {
+        key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table
+    }
+    start = table.get("start", "auto")
+    return limits | {"start": start} if start.endswith(".npz") else limits
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

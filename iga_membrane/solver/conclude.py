@@ -20,7 +20,7 @@ from .contact_line import contact_line, vertical_forces
 from .footing import engulfed, footing
 from .forces import particle_forces, pull_on_sphere
 from .linear import SingularMatrix
-from .load_stepping import Bracket, LoadStep
+from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, sphere_of, volume
 from .newton import NewtonResult
 from .options import SolverOptions
@@ -66,6 +66,7 @@ class Outcome:
     result: NewtonResult
     steps: list[LoadStep]
     bracket: Bracket | None = None
+    progress: Progress | None = None
 
 
 def conclude(
@@ -123,6 +124,7 @@ def conclude(
         iterations=tuple(result.iterations),
         load_steps=tuple(outcome.steps),
         bracket=outcome.bracket,
+        progress=outcome.progress,
         cpu_seconds={
             "compile": assembly.compile_seconds,
             "assembly": assembly.seconds,

@@ -16,7 +16,7 @@ from ..surface.surface import Surface
 from ..terms import BodyDensity, SurfaceTension
 from .audit import Audit
 from .forces import ParticleForces
-from .load_stepping import Bracket, LoadStep
+from .load_stepping import Bracket, LoadStep, Progress
 from .newton import Iteration
 from .status import Status
 
@@ -41,6 +41,8 @@ class Solution:
     bracket : of the limit point where the status is LIMIT_POINT.
     iterations : the Newton iterations; load_steps : the loads tried.
     cpu_seconds : by what they were spent on.
+    progress : of load stepping that stopped short; a state file keeps it, and a solve that starts
+        from that file goes on there.
     """
 
     scene: Scene
@@ -63,6 +65,7 @@ class Solution:
     bracket: Bracket | None = None
     warnings: Sequence[str] = ()
     kind: str | None = None
+    progress: Progress | None = field(default=None, repr=False)
 
     @property
     def success(self) -> bool:

@@ -8,7 +8,7 @@ from time import process_time
 from typing import Literal
 
 from ..checks import number
-from ..errors import SceneError, SolveError
+from ..errors import SceneError, SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from .assembly import Assembly
 from .conclude import Outcome, conclude
@@ -16,6 +16,7 @@ from .load_stepping import Bracket, LoadStep, load_stepping
 from .newton import NewtonOptions, NewtonResult
 from .options import SolverOptions
 from .solution import Solution
+from .state import journal_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +71,8 @@ def trace(
     ------
     SceneError
         Fewer than two values.
+    StateError
+        If ``options.start`` is not the state of this path.
     SolveError
     """
     if len(values) < 2:
@@ -93,17 +96,24 @@ def walk(
     settings = NewtonOptions(
         options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
     )
-    found: list[Solution] = []
+    journal = journal_of(ramp, options)
+    if options.start is not None and journal.start is None:
+        raise StateError(
+            f"{options.start}: not the state of this path, interrupted, with these options; a path "
+            "starts from its own first value: leave solver.start out"
+        )
+    found: list[Solution] = list(journal.start.found) if journal.start else []
 
-    def reached(scene: Scene, state: NewtonResult) -> None:
+    def reached(scene: Scene, state: NewtonResult) -> Sequence[Solution]:
         assembly.load(scene)
         found.append(conclude(Outcome(scene, state, []), assembly, options, started))
+        return found
 
-    path = load_stepping(ramp, assembly, settings, options.min_load_step, report, reached)
+    path = load_stepping(ramp, assembly, settings, options.min_load_step, report, reached, journal)
     history = [_with_measures(step, ramp, found) for step in path.steps]
     if path.result.status is not None:
         assembly.load(path.scene)
-        outcome = Outcome(path.scene, path.result, history, path.bracket)
+        outcome = Outcome(path.scene, path.result, history, path.bracket, path.progress)
         return [*found, conclude(outcome, assembly, options, started)]
     return [*found[:-1], replace(found[-1], load_steps=tuple(history))]
 

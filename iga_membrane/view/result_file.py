@@ -1,8 +1,7 @@
-"""The result file (JSON) and the state file (npz without pickle, with a checksum)."""
+"""The result file (JSON)."""
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from typing import Any
@@ -56,28 +55,6 @@ def result(solution: Solution) -> dict[str, Any]:
 def result_text(solution: Solution) -> str:
     """JSON text of the result."""
     return json.dumps(result(solution), indent=1, allow_nan=False) + "\n"
-
-
-def write_state(solution: Solution, path: str) -> None:
-    """Control points and multipliers of a state, in the scene's own scale."""
-    scene = solution.scene
-    points = np.ascontiguousarray(scene.units.to_local(solution.surface.points))
-    multipliers = np.array(list(solution.multipliers.values()))
-    header = {
-        "schema": SCHEMA,
-        "version": __version__,
-        "status": solution.status.name,
-        "scene": _finite(dict(scene.description)),
-        "multipliers": list(solution.multipliers),
-        "sha256": hashlib.sha256(points.tobytes() + multipliers.tobytes()).hexdigest(),
-    }
-    with open(path, "wb") as file:
-        np.savez(
-            file,
-            header=np.frombuffer(json.dumps(header).encode(), np.uint8),
-            points=points,
-            multipliers=multipliers,
-        )
 
 
 def _forces(found: ParticleForces) -> dict[str, Any]:
