@@ -36,6 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OutputError as error:
         print(f"error: {error}", file=sys.stderr)
         return NOT_WRITABLE
+    except MemoryError:
+        print("error: out of memory; choose fewer discretization.elements", file=sys.stderr)
+        return FAILED
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number
+from ..checks import choice, number, record
 from ..errors import SceneError
 from ..solids import Sphere
 from ..surface.closed import Stretch
@@ -22,7 +22,7 @@ from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension
 from .asperities import smallest_model
-from .liquid import MODELS, Discretization, Liquid, Mesh
+from .liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
 from .scene import Ramp, Scene
 
 SHAPES = ("square", "circle")
@@ -59,7 +59,8 @@ def asperity_cell(
     SceneError
         A value out of its range; a sphere that does not fit into the cell.
     """
-    liquid = liquid or Liquid()
+    liquid, asked = with_defaults(liquid, discretization)
+    record("sphere", sphere, Sphere)
     choice("cell.shape", shape, SHAPES)
     size = number("cell.size", size, above=0.0)
     pressure = number("cell.pressure", pressure, above=0.0)
@@ -76,7 +77,6 @@ def asperity_cell(
             f"{2.0 * (reach + r):g}"
         )
     along = size / r * (1.0 if shape == "square" else 0.5)
-    asked = discretization or Discretization()
     mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * along)))
     smallest = smallest_model(sphere, size, (0.0, 0.0))
     model = mesh.model or smallest

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number, vector
+from ..checks import choice, number, record, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.supports import Sector
@@ -24,7 +24,7 @@ from ..terms import (
     Volume,
 )
 from .foot import Question, foot_of, rim_radius, with_rim
-from .liquid import Discretization, Liquid
+from .liquid import Discretization, Liquid, with_defaults
 from .scene import FreeEdge, Ramp, Scene
 
 HOLDS = ("none", "x", "xy", "xyz")
@@ -70,7 +70,8 @@ def sessile_droplet(
         yet); a model with a mirror plane that gravity or the substrate does not have; a start below
         the substrate.
     """
-    liquid = liquid or Liquid()
+    liquid, asked = with_defaults(liquid, discretization)
+    record("substrate", substrate, Plane, Sphere, SphereLattice, Spheres)
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     acceleration = _acceleration(gravity)
@@ -85,7 +86,6 @@ def sessile_droplet(
             f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "
             "length leaves the range of floating point numbers; choose other units"
         )
-    asked = discretization or Discretization()
     terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)

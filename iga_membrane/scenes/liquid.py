@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from ..checks import choice, integer, number
+from ..checks import choice, integer, number, record
 from ..errors import SceneError
 
 Model = Literal["full", "half", "quarter", "eighth"]
@@ -65,6 +65,22 @@ class Discretization:
     def mesh(self, *, degree: int = 4, elements: int = 20) -> Mesh:
         """The choices, with a scene's own where there are none."""
         return Mesh(self.space, self.degree or degree, self.elements or elements, self.model)
+
+
+def with_defaults(
+    liquid: Liquid | None, discretization: Discretization | None
+) -> tuple[Liquid, Discretization]:
+    """What a scene was given, or the defaults.
+
+    Raises
+    ------
+    SceneError
+        If they are not what they should be.
+    """
+    given = liquid or Liquid(), discretization or Discretization()
+    record("liquid", given[0], Liquid)
+    record("discretization", given[1], Discretization)
+    return given
 
 
 @dataclass(frozen=True)

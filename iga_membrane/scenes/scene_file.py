@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import choice, number, vector
+from ..checks import choice, number, path_values, record, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from .asperities import STARTS
@@ -57,6 +57,7 @@ def load_scene(path: str | Path) -> SceneFile:
     SceneError
         Not readable, too large, not TOML/JSON, or any field wrong; the message names the field.
     """
+    record("path", path, str, Path)
     path = Path(path)
     try:
         size = path.stat().st_size
@@ -129,10 +130,7 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     for key in ("parameter", "values"):
         if key not in path:
             raise SceneError(f"path[0].{key}: missing; a path needs it")
-    parameter, values = path["parameter"], path["values"]
-    if not isinstance(values, list) or len(values) < 2:
-        raise SceneError(f"path[0].values = {values!r}: a list of two or more numbers is needed")
-    values = tuple(number(f"path[0].values[{i}]", v) for i, v in enumerate(values))
+    parameter, values = path["parameter"], path_values("path[0].values", path["values"])
     fixed = {key: value for key, value in data.items() if key != "path"}
 
     def at(value: float) -> Scene:

@@ -6,12 +6,13 @@ The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 from __future__ import annotations
 
 from dataclasses import replace
+from types import NoneType
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number
+from ..checks import choice, flag, number, record
 from ..errors import SceneError
 from ..solids import Sphere
 from ..splines import Grading, Space, points_of
@@ -27,7 +28,7 @@ from ..surface.shapes import sheet as flat_square
 from ..surface.supports import Fixed, Sector, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension, Term, Volume
-from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
 from .scene import FreeEdge, Ramp, Scene
 from .start import check_net
 
@@ -66,9 +67,11 @@ def liquid_sheet(
         A value out of its range, both pressure and volume, a particle whose middle is not inside
         the rim, a model with a mirror plane that the particle's place does not have.
     """
-    liquid = liquid or Liquid()
+    liquid, asked = with_defaults(liquid, discretization)
+    record("particle", particle, Sphere, NoneType)
+    flag("sheet.liquid_weight", liquid_weight)
     choice("sheet.boundary", boundary, BOUNDARIES)
-    mesh = (discretization or Discretization()).mesh(elements=8 if boundary == "square" else 20)
+    mesh = asked.mesh(elements=8 if boundary == "square" else 20)
     size = number("sheet.size", size, above=0.0)
     gravity = number("gravity.acceleration", gravity, least=0.0)
     if pressure is not None and volume is not None:

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..solids import Plane, Sphere
 from ..surface.surface import Surface
-from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine
+from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_line import contact_line, vertical_forces
@@ -26,7 +27,7 @@ from .newton import NewtonResult
 from .options import SolverOptions
 from .solution import Solution
 from .stability import Stability, stability_of
-from .status import Status
+from .status import REMEDY, Status
 
 
 @dataclass(frozen=True)
@@ -77,20 +78,17 @@ def conclude(
     surface, multipliers = result.surface, result.multipliers
     verdict, checked, kind = None, None, None
     status, message = result.status, result.message
-    if status is None:
-        try:
-            verdict = stability_of(assembly, surface, multipliers)
-        except (SingularMatrix, np.linalg.LinAlgError) as error:
-            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
-    if status is None and options.audit:
-        motion = assembly.spines.on(surface)
-        body = assembly.density(multipliers)
-        load = assembly.line_load(multipliers)
-        checked = audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
+    if status in REMEDY:
+        message = f"{message}: {REMEDY[status]}"
+    if status is not Status.INTERRUPTED:
+        verdict, doubt = _examined(assembly, surface, multipliers)
+        checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
+        if status is None and verdict is None:
+            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {doubt}"
     hold = _hold_force(scene, assembly, surface, multipliers)
+    inside = volume(assembly, surface)
     if status is None:
         assert verdict is not None
-        inside = volume(assembly, surface)
         status, message = _judge(scene, verdict, checked, inside)
         if assembly.contact is not None:
             objection = _contact_objection(scene, assembly, surface, multipliers)
@@ -99,7 +97,7 @@ def conclude(
     sunk = _too_soft(scene, assembly, multipliers)
     if sunk is not None and status is not Status.INTERRUPTED:
         status, message = sunk
-    if verdict is None and status is not Status.INTERRUPTED and _reaches_boundary(scene, surface):
+    if result.status not in (None, Status.INTERRUPTED) and _reaches_boundary(scene, surface):
         status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
         message = "the contact line reaches the rim: no sheet is left between them"
     scale = scene.units
@@ -118,6 +116,7 @@ def conclude(
         index=verdict.index if verdict else None,
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
         audit=checked,
+        volume_error=_volume_error(scene, inside),
         hold_force=hold,
         contact=_contact(scene, assembly, result, found, checked),
         unknowns=assembly.size,
@@ -134,6 +133,39 @@ def conclude(
         },
         warnings=_warnings(scene),
     )
+
+
+def _examined(
+    assembly: Assembly, surface: Surface, multipliers: Array
+) -> tuple[Stability | None, str]:
+    """Stability of a state, converged or not; or why there is none."""
+    with np.errstate(all="ignore"):
+        try:
+            verdict = stability_of(assembly, surface, multipliers)
+        except (SingularMatrix, GeometryError, np.linalg.LinAlgError, MemoryError) as error:
+            return None, str(error)
+    if not np.isfinite(verdict.smallest):
+        return None, "the smallest eigenvalue is not finite"
+    return verdict, ""
+
+
+def _audited(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> Audit | None:
+    """The audit of a state, converged or not; None where there is no normal or no memory."""
+    body, load = assembly.density(multipliers), assembly.line_load(multipliers)
+    with np.errstate(all="ignore"):
+        try:
+            motion = assembly.spines.on(surface)
+            return audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
+        except (GeometryError, MemoryError):
+            return None
+
+
+def _volume_error(scene: Scene, inside: float) -> float | None:
+    """Relative error of a prescribed volume; None where none is."""
+    held = next((t for t in scene.local_terms() if isinstance(t, Volume)), None)
+    return abs(inside - held.target) / held.value if held else None
 
 
 NARROW = 0.02, 0.05
@@ -223,7 +255,7 @@ def _judge(
             f"error {verdict.error:.1e}"
         )
     if checked is None:
-        return Status.UNVERIFIED, "converged and stable; the audit was switched off"
+        return Status.UNVERIFIED, "converged and stable, but not audited"
     return Status.CONVERGED_STABLE, "converged, audited and stable"
 
 
@@ -291,8 +323,17 @@ def _contact(
         "wet_area": found["A_wet"],
         "wet_fraction": found["A_wet"] / (np.pi * rim**2),
         "max_penetration": checked.penetration * unit if checked else None,
+        "deepest_point": _deepest(scene, checked),
         "support_force": support * scale.force,
     }
+
+
+def _deepest(scene: Scene, checked: Audit | None) -> list[float] | None:
+    """World point where the membrane lies deepest in the solid, or nearest to it."""
+    if checked is None or checked.deepest is None:
+        return None
+    place: list[float] = scene.units.to_world(np.array(checked.deepest)).tolist()
+    return place
 
 
 def _footing(
@@ -329,6 +370,7 @@ def _footing(
         "wet_area": wet,
         "wet_fraction": wet / foot if foot else None,
         "max_penetration": checked.penetration * contact.length * scale.length if checked else None,
+        "deepest_point": _deepest(scene, checked),
         "support_force": -float(feet.total[2]) * scale.force,
         "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
     }

@@ -269,7 +269,9 @@ def _give_up(
         )
         return
     reason = failed.message or f"{failed.index} negative eigenvalues"
-    path.result.status = Status.STALLED
+    # the user's own limit of iterations, not the steps, may be what is too small
+    limited = failed.status is Status.MAX_ITER and options.max_iterations < PATIENCE
+    path.result.status = Status.MAX_ITER if limited else Status.STALLED
     path.result.message = (
         f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.values[-1]:.6g}, with "
         f"steps of {hi - lo:.1e} ({reason})"

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..checks import integer, number
+from ..checks import flag, integer, number
 from ..errors import SceneError
+
+ON_FAIL = ("raise", "return")
+"""What to do with a solution that is no success."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,7 @@ class SolverOptions:
             integer("solver.quadrature", self.quadrature, least=1, most=64)
         number("solver.max_cpu_s", self.max_cpu_s, above=0.0)
         number("solver.max_memory_gb", self.max_memory_gb, above=0.0)
+        flag("solver.audit", self.audit)
         for name in ("start", "checkpoint"):
             path = getattr(self, name)
             if path is not None and Path(path).suffix != ".npz":

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import Array
+from ..checks import choice, record
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..surface.surface import Surface
@@ -20,7 +21,7 @@ from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
 from .load_stepping import LoadPath, LoadStep, load_stepping
 from .newton import NEAR, NewtonOptions, NewtonResult, newton
-from .options import SolverOptions
+from .options import ON_FAIL, SolverOptions
 from .solution import Solution
 from .state import journal_of, start_surface
 from .status import Status
@@ -57,7 +58,10 @@ def solve(
     SolveError
         If the status is not ``CONVERGED_STABLE`` and ``on_fail`` is "raise".
     """
+    record("scene", scene, Scene)
     options = options or SolverOptions()
+    record("options", options, SolverOptions)
+    choice("on_fail", on_fail, ON_FAIL)
     started = process_time()
     _check_memory(scene, options)
     if scene.ramp is not None and scene.ramp.asked:
@@ -66,7 +70,12 @@ def solve(
     halfway = options.start is not None and _halfway(scene, options)
     if options.start is not None and not halfway:
         scene = replace(scene, surface=start_surface(options.start, scene))
-    assembly = Assembly(scene, options.quadrature)
+    try:
+        assembly = Assembly(scene, options.quadrature)
+    except MemoryError as error:
+        raise SceneError(
+            "discretization.elements: the mesh does not fit into memory; choose fewer elements"
+        ) from error
     settings = NewtonOptions(
         options.max_iterations,
         options.tolerance,

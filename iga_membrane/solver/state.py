@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
+from ..checks import record
 from ..errors import SceneError, StateError
 from ..files import previous, read_arrays, write_arrays
 from ..records import decode, digest, encode
@@ -36,6 +37,7 @@ def load(path: str | Path, *, also: Sequence[type] = ()) -> Solution:
     StateError
         Corrupt, cut off, foreign or newer; or a checkpoint that holds no solution yet.
     """
+    record("path", path, str, Path)
     found = _read(Path(path), also)
     if isinstance(found, Solution):
         return found

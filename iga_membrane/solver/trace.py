@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from time import process_time
 from typing import Literal
 
-from ..checks import number
-from ..errors import SceneError, SolveError, StateError
+from ..checks import choice, path_values
+from ..errors import SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
 from .newton import NewtonOptions, NewtonResult
-from .options import SolverOptions
+from .options import ON_FAIL, SolverOptions
 from .solution import Solution
 from .state import journal_of
 
@@ -70,14 +70,13 @@ def trace(
     Raises
     ------
     SceneError
-        Fewer than two values.
+        Fewer than two values, too many, or one that is not a number.
     StateError
         If ``options.start`` is not the state of this path.
     SolveError
     """
-    if len(values) < 2:
-        raise SceneError(f"values = {list(values)}: a path needs two or more")
-    checked = tuple(number(f"values[{i}]", v) for i, v in enumerate(values))
+    choice("on_fail", on_fail, ON_FAIL)
+    checked = path_values("values", values)
     ramp = Ramp(parameter, checked, scene_at, asked=True)
     found = walk(ramp, options or SolverOptions(), report)
     reached = [s for s in found if s.success]

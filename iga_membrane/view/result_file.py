@@ -11,6 +11,7 @@ import numpy as np
 from .. import __version__
 from ..scenes.scene_file import SCHEMA
 from ..solver.forces import ParticleForces
+from ..solver.load_stepping import LoadStep
 from ..solver.solution import Solution
 
 
@@ -43,9 +44,10 @@ def result(solution: Solution) -> dict[str, Any]:
             "hold_force": list(solution.hold_force),
         },
         "forces": [_forces(found) for found in solution.forces],
-        "audit": vars(verdict) if verdict else None,
-        "history": [vars(step) | {"status": step.status and step.status.name}
-                    for step in solution.load_steps],
+        "audit": verdict.defects if verdict else None,
+        "volume_error": solution.volume_error,
+        "last_good_load": _step(solution.last_good_load),
+        "history": [_step(step) for step in solution.load_steps],
         "iterations": [vars(step) for step in solution.iterations],
     }  # fmt: skip
     cleaned: dict[str, Any] = _finite(record)
@@ -55,6 +57,10 @@ def result(solution: Solution) -> dict[str, Any]:
 def result_text(solution: Solution) -> str:
     """JSON text of the result."""
     return json.dumps(result(solution), indent=1, allow_nan=False) + "\n"
+
+
+def _step(step: LoadStep | None) -> dict[str, Any] | None:
+    return None if step is None else vars(step) | {"status": step.status and step.status.name}
 
 
 def _forces(found: ParticleForces) -> dict[str, Any]:
