@@ -41,6 +41,7 @@ _HOME = {
     "solver.trace": ("Path", "trace"),
     "solver.contact_line": ("contact_line",),
     "analysis.critical": ("Crossing", "critical_value"),
+    "analysis.sweep": ("Sweep", "sweep"),
     "view.picture": ("plot",),
     "view.export": ("save",),
 }  # fmt: skip

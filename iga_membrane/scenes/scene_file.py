@@ -57,6 +57,17 @@ def load_scene(path: str | Path) -> SceneFile:
     SceneError
         Not readable, too large, not TOML/JSON, or any field wrong; the message names the field.
     """
+    return read_scene(read_tables(path))
+
+
+def read_tables(path: str | Path) -> Any:
+    """The tables of a TOML or JSON file, not checked yet.
+
+    Raises
+    ------
+    SceneError
+        Not readable, too large, or not TOML/JSON.
+    """
     record("path", path, str, Path)
     path = Path(path)
     try:
@@ -75,7 +86,7 @@ def load_scene(path: str | Path) -> SceneFile:
         raise
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{path}: not a scene file ({error})") from error
-    return read_scene(data)
+    return data
 
 
 def read_scene(data: Any) -> SceneFile:
@@ -134,7 +145,7 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     fixed = {key: value for key, value in data.items() if key != "path"}
 
     def at(value: float) -> Scene:
-        return read_scene(_set(fixed, parameter, value)).scene
+        return read_scene(with_number(fixed, "path[0].parameter", parameter, value)).scene
 
     # one model for the whole path: the largest that any of its scenes needs
     models = [at(value).sector.model for value in values]
@@ -147,14 +158,29 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     return replace(end, ramp=ramp, description=description)
 
 
-def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any]:
-    """A copy of a scene file's tables with one number changed."""
+def with_number(
+    data: Mapping[str, Any], field: str, parameter: Any, value: float
+) -> dict[str, Any]:
+    """A copy of a scene file's tables with one number changed.
+
+    Parameters
+    ----------
+    field : the place that names the parameter, for messages.
+    parameter : path of the number, "substrate.contact_angle" or "particle[0].center[2]".
+
+    Raises
+    ------
+    SceneError
+        If there is no such place.
+    """
+    if not isinstance(parameter, str):
+        raise SceneError(f"{field} = {parameter!r}: must be text")
     steps = re.findall(r"[a-z_]+|\[\d+\]", parameter)
     well_formed = re.fullmatch(r"[a-z_]+(\[\d+\])?\.[a-z_]+(\[\d+\])?", parameter)
     keys = [step for step in steps if not step.startswith("[")]
     if not well_formed or keys[1] not in KEYS.get(keys[0], ()):
         raise SceneError(
-            f"path[0].parameter = {parameter!r}: must be the path of a number in the scene file, "
+            f"{field} = {parameter!r}: must be the path of a number in the scene file, "
             'like "substrate.contact_angle" or "particle[0].center[2]"'
         )
     changed = copy.deepcopy(dict(data))
@@ -168,7 +194,7 @@ def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any
         place[indices[-1]] = value
     except (AttributeError, IndexError, KeyError, TypeError) as error:
         raise SceneError(
-            f"path[0].parameter = {parameter!r}: there is no such place in the scene file"
+            f"{field} = {parameter!r}: there is no such place in the scene file"
         ) from error
     return changed
 

@@ -167,7 +167,8 @@ def load_stepping(
         else:
             step = 0.5 * min(step, load - path.last_good)
             lo, hi = ramp.value(path.last_good), ramp.value(load)
-            if step < smallest and abs(hi - lo) <= BRACKET * max(abs(lo), abs(hi)):
+            lost = step < smallest and abs(hi - lo) <= BRACKET * max(abs(lo), abs(hi))
+            if lost or len(path.steps) > ATTEMPTS * len(stops):
                 _give_up(assembly, path, ramp, load, result, attempts)
                 break
     return path
@@ -202,6 +203,8 @@ BRACKET = 4e-4
 """Width of a bracket over the parameter's value."""
 BOUNDED = 0.02
 """Distance from a ramp's known bound, over it, within which a failure is that bound's."""
+ATTEMPTS = 200
+"""Loads tried at most, per value of the ramp: beyond, the path creeps."""
 PATIENCE = 20
 """Newton iterations of one attempt: a load that needs more is approached by shorter steps."""
 FOLD = 3.0

@@ -26,7 +26,7 @@ def save(solution: Solution, path: str | Path) -> None:
     path = Path(path)
     match path.suffix:
         case ".json":
-            from .result_file import result_text
+            from ..solver.result_file import result_text
 
             text = result_text(solution)
             write_whole(path, lambda file: Path(file).write_text(text, encoding="utf-8"))

@@ -16,8 +16,8 @@ from iga_membrane.cli import main
 from iga_membrane.solver import newton as newton_module
 from iga_membrane.solver import solve as solve_module
 from iga_membrane.solver.assembly import Assembly
+from iga_membrane.solver.result_file import result
 from iga_membrane.solver.status import REMEDY
-from iga_membrane.view.result_file import result
 
 HARD = {
     "drop": lambda: droplet(30, 100.0, elements=8),

@@ -10,9 +10,9 @@ import numpy as np
 
 from .. import __version__
 from ..scenes.scene_file import SCHEMA
-from ..solver.forces import ParticleForces
-from ..solver.load_stepping import LoadStep
-from ..solver.solution import Solution
+from .forces import ParticleForces
+from .load_stepping import LoadStep
+from .solution import Solution
 
 
 def result(solution: Solution) -> dict[str, Any]:
