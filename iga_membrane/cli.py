@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -29,9 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     try:
-        return {"solve": _solve, "sweep": _sweep, "info": _info, "plot": _plot}[given.command](
-            given
-        )
+        code: int = given.run(given)
+        return code
     except (SceneError, GeometryError, StateError) as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_SCENE
@@ -68,7 +68,7 @@ def _solve(given: argparse.Namespace) -> int:
         save(solution, folder / "surface.vtu")
     if given.png:
         save(solution, folder / "picture.png")
-    print(solution.summary())
+    _say(solution.summary())
     return SOLVED if solution.success else FAILED
 
 
@@ -91,7 +91,7 @@ def _sweep(given: argparse.Namespace) -> int:
     for name in ("table.csv", "table.npz"):
         found.save(folder / name)
     counts = ", ".join(f"{count} {name}" for name, count in found.statuses.items())
-    print(f"{len(found.records)} points ({found.computed} computed now): {counts}")
+    _say(f"{len(found.records)} points ({found.computed} computed now): {counts}")
     return SOLVED if found.success else FAILED
 
 
@@ -101,12 +101,12 @@ def _info(given: argparse.Namespace) -> int:
     if path.suffix == ".npz":
         from .solver.state import load
 
-        print(load(path).summary())
+        _say(load(path).summary())
         return SOLVED
     record = _json(path)
-    print(f"{record['status']}: {record.get('message')}")
-    for name, value in record.get("measures", {}).items():
-        print(f"  {name:<24}{value!r:>24}")
+    lines = [f"{record['status']}: {record.get('message')}"]
+    lines += [f"  {name:<24}{value!r:>24}" for name, value in record.get("measures", {}).items()]
+    _say("\n".join(lines))
     return SOLVED
 
 
@@ -120,7 +120,7 @@ def _plot(given: argparse.Namespace) -> int:
     solution = load(state)
     check_drawing()
     solution.plot(out, **({"color": given.color} if given.color else {}))
-    print(out)
+    _say(str(out))
     return SOLVED
 
 
@@ -143,6 +143,14 @@ def _json(path: Path) -> dict[str, Any]:
     if not isinstance(record, dict) or "status" not in record:
         raise StateError(f"{path}: not a result file of iga_membrane")
     return record
+
+
+def _say(text: str) -> None:
+    """Print; a reader that has left, like ``head``, is no error."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _command(commands: Any, name: str, run: Callable[[Any], int], text: str) -> Any:
