@@ -69,8 +69,9 @@ def report(scenes: list, found: iga.Sweep) -> None:
     print(f"\n{len(scenes)} scenes: {dict(total)}")
     print(f"of {known} with a known equilibrium {solved} solved: {100 * solved / known:.1f} %")
     print(
-        f"CPU s of a solve: median {np.median(seconds):.2f}, 95 % {np.percentile(seconds, 95):.1f}, "
-        f"largest {max(seconds):.0f}, sum {sum(seconds):.0f}\n"
+        f"CPU s of a solve: median {np.median(seconds):.2f}, "
+        f"95 % {np.percentile(seconds, 95):.1f}, largest {max(seconds):.0f}, "
+        f"sum {sum(seconds):.0f}\n"
     )
     for row in trouble:
         print(*row, sep=" | ")

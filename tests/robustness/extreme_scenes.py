@@ -114,7 +114,13 @@ def on_plane(angle, bond, length, tension, distortion=0.0, **options):
 
 
 def plane_oracle(result, angle, bond, length, tension, **_):
-    return scaled(drop_on_plane(bond, angle), length, tension)
+    try:
+        exact = drop_on_plane(bond, angle)
+    except ValueError:
+        # wider than 600 capillary lengths, where a puddle's height is that of its straight edge
+        height = 2.0 * np.sin(0.5 * np.radians(angle)) / np.sqrt(bond)
+        return {"height": height * length, "p_base": bond * height * tension / length}
+    return scaled(exact, length, tension)
 
 
 def flat_foot(**parameters):
@@ -313,9 +319,7 @@ def cell_oracle(result, size, part, length, tension):
     return {"F_sphere": part * carried(length, area) * tension * area}
 
 
-def lattice(radius, pitch, part, length, tension, penalty=None):
-    """Droplet whose pressure at rest on a plane is a part of what the lattice carries."""
-    bond = bond_of(radius, pitch, part)
+def lattice(radius, pitch, bond, length, tension, penalty=None):
     return iga.sessile_droplet(
         iga.SphereLattice(180.0, radius * length, pitch * radius * length),
         volume=UNIT * length**3,
@@ -325,20 +329,12 @@ def lattice(radius, pitch, part, length, tension, penalty=None):
     )
 
 
-def bond_of(radius, pitch, part):
-    wanted = part * carried(radius, (pitch * radius) ** 2)
-
-    def missing(log_bond):
-        return drop_on_plane(np.exp(log_bond), 180.0)["p_base"] - wanted
-
-    low, high = np.log(1e-3), np.log(300.0)
-    if missing(low) > 0:
-        return 1e-3
-    return 300.0 if missing(high) < 0 else float(np.exp(brentq(missing, low, high, xtol=1e-3)))
-
-
-def lattice_weight(result, radius, pitch, part, length, tension, **_):
-    return weight(result, bond_of(radius, pitch, part), length, tension)
+def carries(radius, pitch, bond, **_):
+    """Whether a lattice carries a droplet, from its pressure at rest on a plane; near the limit,
+    or where the droplet stands on one or two asperities, this does not tell."""
+    share = drop_on_plane(bond, 180.0)["p_base"] / carried(radius, (pitch * radius) ** 2)
+    wide = drop_on_plane(bond, 180.0)["contact_radius"] > pitch * radius
+    return True if share < 0.7 and wide else False if share > 1.5 else None
 
 
 ANGLE = (0.5, 179.9)
@@ -430,29 +426,30 @@ KINDS = {
     ),
     "lattice": Kind(
         0.04,
-        {"radius": (0.12, 0.6), "pitch": (2.05, 4.0), "part": (0.1, 0.7), **UNITS},
+        {"radius": (0.06, 0.3), "pitch": (2.05, 4.0), "bond": (0.1, 5.0), **UNITS},
         lattice,
-        True,
-        lattice_weight,
+        carries,
+        weight,
     ),
     "penalty": Kind(
         0.02,
         {
             "radius": (0.2, 0.5),
             "pitch": (2.05, 3.0),
-            "part": (0.1, 0.5),
+            "bond": (0.1, 3.0),
             "penalty": (1e3, 1e9),
             **UNITS,
         },
         lattice,
         None,
-        lattice_weight,
+        weight,
     ),
     "overload": Kind(
         0.02,
-        {"radius": (0.1, 0.3), "pitch": (5.0, 8.0), "part": (2.0, 4.0), **UNITS},
+        {"radius": (0.1, 0.3), "pitch": (5.0, 8.0), "bond": (1.0, 10.0), **UNITS},
         lattice,
-        False,
+        carries,
+        weight,
     ),
 }
 
