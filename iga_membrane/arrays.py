@@ -9,3 +9,4 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
 Index = NDArray[np.integer[Any]]
+Mask = NDArray[np.bool_]

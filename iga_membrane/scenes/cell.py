@@ -20,7 +20,7 @@ from ..surface.ring import axisymmetric, drop_space
 from ..surface.shapes import sheet
 from ..surface.supports import Sector
 from ..surface.surface import Surface
-from ..terms import Contact, Pressure, Scale, SurfaceTension
+from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
 from .liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
 from .scene import Ramp, Scene
@@ -47,7 +47,7 @@ def asperity_cell(
 
     Parameters
     ----------
-    sphere : with its contact angle, only 180 degrees yet.
+    sphere : with its contact angle.
     size : side of the square or diameter of the circle, its middle on the z axis.
     pressure : liquid minus gas, > 0.
     penalty : None for exact contact, else traction over depth in units of tension over squared
@@ -65,11 +65,6 @@ def asperity_cell(
     size = number("cell.size", size, above=0.0)
     pressure = number("cell.pressure", pressure, above=0.0)
     r, (x, y, z) = sphere.radius, sphere.center
-    if sphere.contact_angle < 180.0:
-        raise SceneError(
-            f"substrate.contact_angle = {sphere.contact_angle:g}: not available yet in a cell; "
-            "180 is"
-        )
     reach = max(abs(x), abs(y)) if shape == "square" else float(np.hypot(x, y))
     if reach + r >= 0.5 * size:
         raise SceneError(
@@ -85,11 +80,14 @@ def asperity_cell(
             f'discretization.model = "{model}": the sphere stands at x, y = {x:g}, {y:g}; '
             f'"{smallest}" is the smallest model here'
         )
-    unit = (x / r, y / r, z / r)
-    local, directions = _start(shape, size / r, unit, pressure * r / liquid.surface_tension, mesh)
-    surface = local.moved(r * (local.points + [0.0, 0.0, unit[2] + 1.0]))
-    # the wet spot cannot pass the sphere's equator: pi r^2 (p + 2 gamma / r) = p area
     area = size**2 if shape == "square" else 0.25 * np.pi * size**2
+    unit = (x / r, y / r, z / r)
+    drape = _drape(pressure * r / liquid.surface_tension, area / r**2, sphere.contact_angle)
+    local, directions = _start(shape, size / r, unit, drape, mesh)
+    lying = sphere.contact_angle == 180.0
+    sunk = [0.0, 0.0, unit[2] + 1.0 - (SUNK if lying else 0.0)]
+    surface = local.moved(r * (local.points + sunk))
+    # the wet spot cannot pass the sphere's equator: pi r^2 (p + 2 gamma / r) = p area
     carried = 2.0 * np.pi * r * liquid.surface_tension / (area - np.pi * r**2)
     law = None if penalty is None else penalty * liquid.surface_tension / r**2
 
@@ -110,12 +108,16 @@ def asperity_cell(
         [
             SurfaceTension(liquid.surface_tension),
             Pressure(pressure),
-            Contact(sphere, law, penetration_tolerance),
+            Contact(sphere, law, penetration_tolerance)
+            if lying
+            else TrimmedContactLine(liquid.surface_tension, sphere),
         ],
         [Sector(model)],
         scale=Scale(r, liquid.surface_tension),
         directions=directions,
-        ramp=Ramp("cell.pressure", (0.5 * pressure, pressure), at, bound=carried),
+        ramp=Ramp(
+            "cell.pressure", (0.5 * pressure, pressure), at, bound=carried if lying else None
+        ),
         substrate=sphere,
         kind="asperity_cell",
         description=_describe(sphere, size, pressure, shape, liquid, mesh, model),
@@ -124,57 +126,64 @@ def asperity_cell(
 
 @dataclass(frozen=True, eq=False)
 class _Drape:
-    """Round cell of the same area, solved exactly: a wet cap and the surface round it.
+    """Round cell of the same area, solved exactly: a wet spot and the surface round it.
 
     Attributes
     ----------
-    share : (k,) parameter from the top; r, z : radius and height there. Equal steps over the wet
-        spot and somewhat beyond, then longer ones.
-    slope : arc length over its whole per share at the top.
+    share : (k,) parameter from the top; r, z : radius and height there.
     """
 
     share: Array
     r: Array
     z: Array
-    slope: float
 
 
-def _drape(pressure: float, area: float) -> _Drape:
+def _drape(pressure: float, area: float, contact_angle: float) -> _Drape:
     """Drape over the unit sphere with its top at 0 (tension 1).
 
-    The wet spot carries the cell, ``pi a^2 (p + 2) = p area``; outside it the vertical force
-    through a circle is that of the pressure beyond it: ``sin(angle) = p (R^2 - r^2) / (2 r)``.
+    Outside the spot the vertical force through a circle is that of the pressure beyond it,
+    ``sin(angle) = p (R^2 - r^2) / (2 r)``; at the line ``angle = phi + theta - pi``.
     """
     outer = np.sqrt(area / np.pi)
-    spot = min(np.sqrt(pressure * area / (np.pi * (pressure + 2.0))), STEEPEST)
-    cap = np.linspace(0.0, np.arcsin(spot), 400)
+    hang = np.pi - np.radians(contact_angle)
+    phi = np.linspace(hang, min(hang, 0.5 * np.pi) + STEEPEST, 4001)[1:]
+    carried = 2.0 * np.sin(phi) * np.sin(phi - hang) / (outer**2 - np.sin(phi) ** 2)
+    enough = carried >= pressure
+    polar = float(phi[enough.argmax() if enough.any() else carried.argmax()])
+    spot, slope = float(np.sin(polar)), polar - hang
     r = spot + (outer - spot) * np.linspace(0.0, 1.0, 4000) ** 2
-    angle = np.arcsin(np.minimum(0.5 * pressure * (outer**2 - r**2) / r, STEEPEST))
-    slope = np.tan(0.5 * (angle[1:] + angle[:-1]))
-    z = np.cos(cap[-1]) - 1.0 - np.concatenate([[0.0], np.cumsum(slope * np.diff(r))])
+    angle = np.arcsin(np.minimum(0.5 * pressure * (outer**2 - r**2) / r, np.sin(STEEPEST)))
+    fall = np.tan(0.5 * (angle[1:] + angle[:-1]))
+    z = np.cos(polar) - 1.0 - np.concatenate([[0.0], np.cumsum(fall * np.diff(r))])
+    inside = np.linspace(0.0, 1.0, 400)
+    if contact_angle < 180.0:
+        # through the sphere the membrane goes on as it pleases; its parameter must be smooth
+        dome = z[0] + 0.5 * spot * np.tan(slope) * (1.0 - inside**2)
+        r, z = np.concatenate([spot * inside, r[1:]]), np.concatenate([dome, z[1:]])
+        return _Drape(r / outer, r, z)
+    cap = polar * inside
     r, z = np.concatenate([np.sin(cap), r[1:]]), np.concatenate([np.cos(cap) - 1.0, z[1:]])
     walked = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
     wide = 1.3 * walked[len(cap) - 1] / walked[-1]
     stretch = Stretch(FINE, wide / FINE) if wide < FINE else Stretch()
     even = np.linspace(0.0, 1.0, 8001)
     share = stretch(even) * walked[-1]
-    return _Drape(even, np.interp(share, walked, r), np.interp(share, walked, z), stretch.slope)
+    return _Drape(even, np.interp(share, walked, r), np.interp(share, walked, z))
 
 
 FINE = 0.6
 """Part of the elements over the wet spot and its surroundings."""
-STEEPEST = float(np.sin(np.radians(87.0)))
+STEEPEST = float(np.radians(87.0))
 
 
 def _start(
-    shape: str, size: float, center: tuple[float, float, float], pressure: float, mesh: Mesh
+    shape: str, size: float, center: tuple[float, float, float], drape: _Drape, mesh: Mesh
 ) -> tuple[Surface, Array]:
     """Draped start over the unit sphere, and the vertical directions of its control points: they
     hold the walls and make the vertical balance of forces exact."""
     half = 0.5 * size
-    drape = _drape(pressure, size**2 if shape == "square" else np.pi * half**2)
     if shape == "circle":
-        first = drape.slope * float(np.hypot(np.diff(drape.r), np.diff(drape.z)).sum())
+        first = float((drape.r[1] - drape.r[0]) / (drape.share[1] - drape.share[0]))
 
         def profile(t: Array) -> tuple[Array, Array, Array]:
             r = np.interp(1.0 - t, drape.share, drape.r)
@@ -196,7 +205,7 @@ def _start(
         z = np.interp(np.hypot(x, y), drape.r, drape.z)
         surface = flat.moved(np.stack([x + center[0], y + center[1], z], axis=1))
     up = np.tile([0.0, 0.0, 1.0], (surface.space.count, 1))
-    return surface.moved(surface.points - SUNK * up), up
+    return surface, up
 
 
 def _describe(

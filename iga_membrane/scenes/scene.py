@@ -14,7 +14,17 @@ from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading
 from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
-from ..terms import BodyTerm, Centroid, Constraint, Contact, LineTerm, Scale, SurfaceTension, Term
+from ..terms import (
+    BodyTerm,
+    Centroid,
+    Constraint,
+    Contact,
+    LineTerm,
+    Scale,
+    SurfaceTension,
+    Term,
+    TrimmedContactLine,
+)
 
 
 @dataclass(frozen=True)
@@ -186,7 +196,7 @@ class Scene:
     def meridian_grading(self) -> Grading | None:
         """The grading of a ring patch; other patches, and membranes that lie on a solid, keep
         their parametrization."""
-        lying = any(isinstance(t, Contact) for t in self.terms)
+        lying = any(isinstance(t, (Contact, TrimmedContactLine)) for t in self.terms)
         regular = self.surface.space.bases[0].periodic and not lying
         return self.grading if regular else None
 

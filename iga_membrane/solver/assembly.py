@@ -10,16 +10,26 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
-from ..splines import EdgeTable, Table
+from ..splines import EdgeTable, LineTable, Table
 from ..surface.motion import Spines
-from ..surface.sector import sector_elements, sector_table
+from ..surface.sector import mirrors, sector_elements, sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
-from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, Contact, LineTerm
+from ..terms import (
+    AreaTerm,
+    BodyDensity,
+    BodyTerm,
+    Constraint,
+    Contact,
+    LineTerm,
+    TrimmedContactLine,
+)
 from ..terms import variations as vary
 from ..terms.edge_gap import EdgeGap
+from ..terms.trimmed import end_hessian, line_forces, line_hessian
 from .contact import ContactSet
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
+from .trim import Trim
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +117,8 @@ class Assembly:
         self._space = space
         self._groups = self._row_groups()
         self.contact = self._contact(scene, surface)
+        self._tied: tuple[Index, Array, Array] | None = None
+        self.trim = self._trim(scene)
         self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
         self.load(scene)
 
@@ -123,6 +135,18 @@ class Assembly:
             term.solid, table, area, term.penalty, term.depth, surface.space, elements
         )
 
+    def _trim(self, scene: Scene) -> Trim | None:
+        """The scene's contact lines inside the membrane."""
+        term = next((t for t in scene.local_terms() if isinstance(t, TrimmedContactLine)), None)
+        if term is None:
+            return None
+        elements, portion = sector_elements(self._space, scene.sector)
+        unknowns = self.spines.unknowns
+        images = mirrors(scene.sector)
+        return Trim(
+            term, self._space, self.table, elements, portion, images, unknowns, self.spines.size
+        )
+
     def load(self, scene: Scene) -> None:
         """Take the terms of another scene of the same space, whose supports move the same edges."""
         terms, supports = scene.local_terms(), scene.local_supports()
@@ -137,6 +161,8 @@ class Assembly:
         self._held = [t.density() for t in self.constraints]
         self._targets = np.array([t.target for t in self.constraints]) / self.copies
         self.lines = [(t, self._edge(t.edge)) for t in terms if isinstance(t, LineTerm)]
+        if self.trim is not None:
+            self.trim.term = next(t for t in terms if isinstance(t, TrimmedContactLine))
         self._gaps = [
             (EdgeGap(s.solid, s.edge), self._edge(s.edge))
             for s in scene.local_supports()
@@ -171,17 +197,26 @@ class Assembly:
         total, constraints = self._values(points, at)
         if self.contact is not None:
             total += self.contact.energy(self.contact.touch(points))
+        if self.trim is not None:
+            total += self.tension * self.trim.ties.energy(points)
+            total = total if self.trim.true(points) else np.inf
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
 
     def near_contact(self, surface: Surface, displacement: Array) -> float:
         """Largest displacement over the contact length, of control points near the solid."""
-        if self.contact is None:
+        if self.contact is not None:
+            near, length = self.contact.near(surface.points), self.contact.length
+        elif self.trim is not None:
+            near, length = self.trim.near(surface.points), self.trim.length
+        else:
             return 0.0
-        close = self.contact.touch(surface.points).at.gap < 2.0 * self.contact.length
-        functions = self.table.functions[close.any(axis=1)]
-        moved = np.linalg.norm(displacement[functions], axis=-1)
-        return float(moved.max(initial=0.0)) / self.contact.length
+        moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)
+        return float(moved.max(initial=0.0)) / length
+
+    def extended(self, step: Array) -> Array:
+        """A step in which unknowns that nothing outside a solid depends on follow the others."""
+        return step if self.trim is None else self.trim.ties.extended(step)
 
     @property
     def rounds(self) -> int:
@@ -203,8 +238,8 @@ class Assembly:
     def body_integral(self, surface: Surface, density: BodyDensity) -> float:
         """Integral of a density over the liquid of one sector, its part under the foot included."""
         points = surface.points
-        _, (flux,) = vary.energies(self.table, vary.element_points(self.table, points), [density])
-        return float(flux + sum(t.energy(edge, points, 0.0, density) for t, edge in self.lines))
+        at = vary.element_points(self.table, points)
+        return float(self._integrals(points, at, 0.0, [density])[1])
 
     def work(self, surface: Surface, multipliers: Array, displacement: Array) -> float:
         """Derivative of the Lagrangian along any displacement (count, 3) of the control points."""
@@ -243,12 +278,52 @@ class Assembly:
         """(3,) sum over all sectors of a vector integrated over one."""
         return np.asarray(self.copies * np.where(self._mirrored, 0.0, vector))
 
-    def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
-        area, integrals = vary.energies(self.table, at, [self.body, *self._held])
-        integrals[0] += self.tension * area
+    def interface(self, surface: Surface) -> tuple[float, float, float]:
+        """Area of the membrane, energy of the wetted surface and its area (one sector)."""
+        points, none = surface.points, BodyDensity()
+        at = vary.element_points(self.table, points)
+        area = sum(vary.energies(rows, part, [])[0] for rows, part in self._parts(points, at))
+        if self.trim is not None:
+            return area, *self.trim.wetting(points)
+        return (
+            area,
+            sum(t.energy(edge, points, t.strength, none) for t, edge in self.lines),
+            sum(t.energy(edge, points, 1.0, none) for t, edge in self.lines),
+        )
+
+    def _parts(
+        self, points: Array, at: vary.ElementPoints
+    ) -> list[tuple[Table, vary.ElementPoints]]:
+        """Tables by rows of the motion, and the geometry there, that make up the membrane."""
+        if self.trim is None:
+            return [(rows, at.part(elements)) for elements, rows in self._groups]
+        outside = self.trim.outside(points)
+        cut = outside.area
+        return [(self.table.weighted(outside.share), at), (cut, vary.element_points(cut, points))]
+
+    def _integrals(
+        self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]
+    ) -> Array:
+        """Energy of the interface and the wetted surface, then the body integrals."""
+        total = np.zeros(1 + len(bodies))
+        if self.trim is None:
+            area, integrals = vary.energies(self.table, at, bodies)
+            total[0], total[1:] = tension * area, integrals
+        else:
+            for rows, part in self._parts(points, at):
+                area, integrals = vary.energies(rows, part, bodies)
+                total[0] += tension * area
+                total[1:] += integrals
+            total[0] += self.trim.wetting(points)[0] if tension else 0.0
+            total[1:] += [self.trim.under(points, body) for body in bodies]
         for term, edge in self.lines:
-            integrals[0] += term.energy(edge, points, term.strength, self.body)
-            integrals[1:] += [term.energy(edge, points, 0.0, held) for held in self._held]
+            none = BodyDensity()
+            total[0] += term.energy(edge, points, term.strength, none) if tension else 0.0
+            total[1:] += [term.energy(edge, points, 0.0, body) for body in bodies]
+        return total
+
+    def _values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
+        interface, body, *held = self._integrals(points, at, self.tension, [self.body, *self._held])
         gaps = [
             np.bincount(
                 self._held_numbers(edge).ravel() + 1,
@@ -257,13 +332,15 @@ class Assembly:
             )[1:]
             for gap, edge in self._gaps
         ]
-        return integrals[0], np.concatenate([integrals[1:] - self._targets, *gaps])
+        return interface + body, np.concatenate([np.array(held) - self._targets, *gaps])
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
         """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
         start = process_time()
         points = surface.points
         at = vary.element_points(self.table, points)
+        if self.trim is not None:
+            self.trim.hold(points)
         _, constraints = self._values(points, at)
         gradient, columns, scale = self._first_order(points, directions, at, multipliers)
         matrix = self._second_order(points, directions, at, multipliers)
@@ -283,14 +360,27 @@ class Assembly:
         """Gradient (n,), gradients of the constraints (n, m), absolute contributions (n,)."""
         gradient, scale = np.zeros(self.size), np.zeros(self.size)
         columns = np.zeros((self.size, self.multipliers))
-        for elements, rows in self._groups:
-            part = at.part(elements)
+        for rows, part in self._parts(points, at):
             work = _along(vary.forces(rows, part, self.tension, self.body), directions, rows)
             gradient += self._gather(work, rows.functions)
             scale += self._gather(np.abs(work), rows.functions)
             for k, held in enumerate(self._held):
                 work = _along(vary.forces(rows, part, 0.0, held), directions, rows)
                 columns[:, k] += self._gather(work, rows.functions)
+        if self.trim is not None:
+            inner = self.trim.on_line(points)
+            cut = inner.table
+            work = _along(line_forces(inner, self.tension, self.body), directions, cut)
+            gradient += self._gather(work, cut.functions)
+            scale += self._gather(np.abs(work), cut.functions)
+            for k, held in enumerate(self._held):
+                work = _along(line_forces(inner, 0.0, held), directions, cut)
+                columns[:, k] += self._gather(work, cut.functions)
+            functions = self.trim.ties.across[0]
+            pull = self.tension * self.trim.ties.forces(points)
+            work = np.einsum("eai,eai->ea", pull, directions[functions])
+            gradient += self._gather(work, functions)
+            gradient[self.trim.ties.idle], columns[self.trim.ties.idle] = 0.0, 0.0
         if self.contact is not None:
             push = self.contact.forces(self.contact.touch(points))
             work = _along(push, directions, self.table)
@@ -324,16 +414,13 @@ class Assembly:
         """Hessian of the Lagrangian."""
         body = self.density(multipliers)
         matrix = self._matrix()
-        for elements, rows in self._groups:
+        for rows, part in self._parts(points, at):
             blocks = vary.hessian(
-                rows,
-                at.part(elements),
-                self.tension,
-                body,
-                directions[rows.functions],
-                self._kernels,
+                rows, part, self.tension, body, directions[rows.functions], self._kernels
             )
             matrix.add(self.spines.unknowns[rows.functions], blocks)
+        if self.trim is not None:
+            self._add_trim(matrix, points, directions, body)
         if self.contact is not None:
             near, blocks = self.contact.hessian(self.contact.touch(points), directions)
             functions = self.table.functions[near]
@@ -347,6 +434,23 @@ class Assembly:
             load = -loads[edge.functions]
             self._add_edge(matrix, directions, edge, gap.hessian(edge, points, load))
         return matrix
+
+    def _add_trim(
+        self, matrix: Matrix, points: Array, directions: Array, body: BodyDensity
+    ) -> None:
+        """Add contact lines inside the membrane, the ties across cuts, and a unit for idle ones."""
+        trim, unknowns = self.trim, self.spines.unknowns
+        assert trim is not None
+        for at, second in (
+            (trim.on_line(points), line_hessian),
+            (trim.on_ends(points), end_hessian),
+        ):
+            functions = at.table.functions
+            blocks = second(at, self.tension, body, directions[functions])
+            matrix.add(unknowns[functions], blocks)
+        ties = trim.ties
+        matrix.add(unknowns[ties.across[0]], self.tension * ties.hessian(directions))
+        matrix.add(ties.idle[:, None], np.full((len(ties.idle), 1, 1), self.tension))
 
     def _add_edge(self, matrix: Matrix, directions: Array, edge: EdgeTable, blocks: Array) -> None:
         """Add edge blocks (elements, local, 3, local, 3) along directions."""
@@ -363,8 +467,8 @@ class Assembly:
         """Mass matrix of normal displacement."""
         at = vary.element_points(self.table, surface.points)
         matrix = self._matrix()
-        for elements, rows in self._groups:
-            blocks = vary.mass(rows, at.part(elements), directions[rows.functions])
+        for rows, part in self._parts(surface.points, at):
+            blocks = vary.mass(rows, part, directions[rows.functions])
             matrix.add(self.spines.unknowns[rows.functions], blocks)
         return matrix
 
@@ -404,7 +508,15 @@ class Assembly:
         return sums.astype(float, copy=False)
 
     def _matrix(self) -> Matrix:
-        return Matrix(self.size, None if self.size <= DENSE_LIMIT else self._pattern)
+        if self.size <= DENSE_LIMIT:
+            return Matrix(self.size)
+        if self.trim is None:
+            return Matrix(self.size, self._pattern)
+        if self._tied is not self.trim.ties.across:
+            self._tied = self.trim.ties.across
+            groups = [self.spines.unknowns[f] for f in (self.table.functions, self._tied[0])]
+            self._pattern = SparsePattern(self.size, groups)
+        return Matrix(self.size, self._pattern)
 
     @cached_property
     def _pattern(self) -> SparsePattern:
@@ -413,7 +525,7 @@ class Assembly:
         )
 
 
-def _along(forces: Array, directions: Array, rows: Table | EdgeTable) -> Array:
+def _along(forces: Array, directions: Array, rows: Table | EdgeTable | LineTable) -> Array:
     """(elements, local) work of forces along the rows' directions."""
     return np.einsum("eai,eai->ea", forces, directions[rows.functions])
 

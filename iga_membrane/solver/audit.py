@@ -96,14 +96,14 @@ def audit(
         + table.values.transpose(0, 2, 1) @ load
     )
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
-    _scatter(total, absolute, motion, table.functions, force)
+    scatter(total, absolute, motion, table.functions, force)
     if contact is not None:
         # tractions push along the solid's normals at the contact points
         x = contact.table.values @ surface.points[contact.table.functions]
         push = contact.solid.nearest(x).normal * (contact.touch(surface.points).traction
                                                   * contact.area)[..., None]  # fmt: skip
         pull = -contact.table.values.transpose(0, 2, 1) @ push
-        _scatter(total, absolute, motion, contact.table.functions, pull)
+        scatter(total, absolute, motion, contact.table.functions, pull)
     lines = [t for t in terms if isinstance(t, LineTerm)]
     solid = sphere_of(scene)
     ring = np.arange(space.bases[0].elements // sector.copies)
@@ -118,7 +118,7 @@ def audit(
         level = 0.5 * (_density(body, x) + body.constant) * x[..., 2]
         density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
         pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
-        _scatter(total, absolute, motion, edge.functions, pull)
+        scatter(total, absolute, motion, edge.functions, pull)
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
     inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
@@ -127,16 +127,16 @@ def audit(
         weight = body.gradient[2] * inside
         carried = -sector.copies * float(push[..., 2].sum())
         missing = abs(carried + weight) / max(abs(weight), abs(carried), TINY)
-        if not _stands_free(scene):
-            return Audit(residual, _missing(terms, inside), penetration=depth, deepest=place)
+        if not stands_free(scene):
+            return Audit(residual, missing_volume(terms, inside), penetration=depth, deepest=place)
         loose = [axis not in sector.mirrored for axis in "xy"]
         pushed = sector.copies * push[..., :2].sum(axis=(0, 1)) * loose
         pushed = pushed - np.array(body.gradient[:2]) * inside * loose
         sideways = float(np.hypot(*pushed)) / max(abs(weight), TINY)
-        volume = _missing(terms, inside)
+        volume = missing_volume(terms, inside)
         return Audit(residual, volume, missing, sideways, penetration=depth, deepest=place)
     if not lines:
-        return Audit(residual, _missing(terms, inside))
+        return Audit(residual, missing_volume(terms, inside))
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
     cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
     free = not any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports)
@@ -147,7 +147,7 @@ def audit(
         depth = max(depth, float(np.abs(solid.gap(line.position)).max())) / solid.radius
     if solid is not None or not free:
         return Audit(
-            residual, _missing(terms, inside), angle=cosine, penetration=depth, deepest=place
+            residual, missing_volume(terms, inside), angle=cosine, penetration=depth, deepest=place
         )
     angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
     forces = vertical_forces(line, body, tension, float(angle))
@@ -155,7 +155,7 @@ def audit(
     scale = abs(forces.push) + abs(forces.line) + abs(weight)
     return Audit(
         residual,
-        _missing(terms, inside),
+        missing_volume(terms, inside),
         force=abs(forces.push - forces.line - weight) / scale,
         line=abs(forces.push - forces.measured - weight) / scale,
         angle=cosine,
@@ -164,13 +164,13 @@ def audit(
     )
 
 
-def _missing(terms: tuple[Term, ...], inside: float) -> float:
+def missing_volume(terms: tuple[Term, ...], inside: float) -> float:
     """Relative error of a prescribed volume."""
     held = next((t for t in terms if isinstance(t, Volume)), None)
     return abs(inside - held.target) / held.value if held else 0.0
 
 
-def _stands_free(scene: Scene) -> bool:
+def stands_free(scene: Scene) -> bool:
     """Whether nothing but the solid carries the liquid's weight."""
     return not any(isinstance(t, Pressure) for t in scene.terms) and not any(
         isinstance(s, (Fixed, Symmetry)) for s in scene.supports
@@ -215,7 +215,7 @@ def _density(body: BodyDensity, x: Array) -> Array:
     return np.asarray(body.constant + x @ np.array(body.gradient))
 
 
-def _scatter(total: Array, absolute: Array, motion: Motion, functions: Index, force: Array) -> None:
+def scatter(total: Array, absolute: Array, motion: Motion, functions: Index, force: Array) -> None:
     work = np.einsum("eai,eai->ea", force, motion.directions[functions])
     where = motion.unknowns[functions]
     np.add.at(total, where, work)

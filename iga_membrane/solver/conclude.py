@@ -18,7 +18,7 @@ from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContact
 from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_line import contact_line, vertical_forces
-from .footing import engulfed, footing
+from .footing import Footing, engulfed, footing
 from .forces import particle_forces, pull_on_sphere
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, Progress
@@ -28,6 +28,7 @@ from .options import SolverOptions
 from .solution import Solution
 from .stability import Stability, stability_of
 from .status import REMEDY, Status
+from .trimmed_audit import trimmed_audit
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ class Tolerance:
     angle : error of the mean cosine of the contact angle.
     penetration : depth below a plane over the scene's length.
     indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
+    mean_angle : error in degrees of the mean contact angle on a sphere the membrane passes through.
     """
 
     residual: float = 1e-3
@@ -54,6 +56,7 @@ class Tolerance:
     angle: float = 2e-2
     penetration: float = 1e-6
     indentation: float = 1e-2
+    mean_angle: float = 1.0
 
 
 TOLERANCE = Tolerance()
@@ -90,7 +93,7 @@ def conclude(
     if status is None:
         assert verdict is not None
         status, message = _judge(scene, verdict, checked, inside)
-        if assembly.contact is not None:
+        if assembly.contact is not None or assembly.trim is not None:
             objection = _contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
@@ -157,6 +160,8 @@ def _audited(
     with np.errstate(all="ignore"):
         try:
             motion = assembly.spines.on(surface)
+            if assembly.trim is not None:
+                return trimmed_audit(scene, surface, motion, body, assembly.trim)
             return audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
         except (GeometryError, MemoryError):
             return None
@@ -302,7 +307,7 @@ def _contact(
 ) -> dict[str, Any]:
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
-    if assembly.contact is not None:
+    if assembly.contact is not None or assembly.trim is not None:
         return _footing(scene, assembly, result, found, checked)
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if line is None:
@@ -344,8 +349,8 @@ def _footing(
     checked: Audit | None,
 ) -> dict[str, Any]:
     """Contact area by area, by the names of the result file."""
-    scale, contact = scene.units, assembly.contact
-    assert contact is not None
+    scale, on = scene.units, assembly.contact or assembly.trim
+    assert on is not None
     body = assembly.density(result.multipliers)
     feet = footing(scene, assembly, result.surface, body)
     rows = [
@@ -355,10 +360,10 @@ def _footing(
             "force": float(np.linalg.norm(force)) * scale.force,
             "force_vector": (scale.axes @ force * scale.force).tolist(),
             "wet_area": float(area) * scale.length**2,
-            "contact_angle": 180.0,
+            "contact_angle": float(angle),
         }
-        for which, center, force, area in zip(
-            feet.which, feet.centers, feet.forces, feet.areas, strict=True
+        for which, center, force, area, angle in zip(
+            feet.which, feet.centers, feet.forces, feet.areas, feet.angles, strict=True
         )
         if which >= 0
     ]
@@ -369,7 +374,7 @@ def _footing(
         "asperities": rows,
         "wet_area": wet,
         "wet_fraction": wet / foot if foot else None,
-        "max_penetration": checked.penetration * contact.length * scale.length if checked else None,
+        "max_penetration": checked.penetration * on.length * scale.length if checked else None,
         "deepest_point": _deepest(scene, checked),
         "support_force": -float(feet.total[2]) * scale.force,
         "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
@@ -384,16 +389,17 @@ def _contact_objection(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[Status, str | None, str] | None:
     """What makes a converged state on a contact area no success, or None."""
-    contact = assembly.contact
-    assert contact is not None
     feet = footing(scene, assembly, surface, assembly.density(multipliers))
-    if (feet.which < 0).any() and not isinstance(scene.substrate, Plane):
+    lines = assembly.trim is not None
+    under = _under_base(scene, assembly, surface) if lines else (feet.which < 0).any()
+    if under and not isinstance(scene.substrate, Plane):
         return (
             Status.TOPOLOGY_CHANGE,
             "touches_base",
             "the liquid touches the plane under the asperities",
         )
-    across = contact.across(contact.touch(surface.points))
+    contact = assembly.contact
+    across = np.inf if contact is None else contact.across(contact.touch(surface.points))
     if across < ACROSS:
         return (
             Status.UNDERRESOLVED,
@@ -401,6 +407,17 @@ def _contact_objection(
             f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
             "discretization.elements",
         )
+    if lines:
+        worst = int(np.abs(feet.angles - _young(scene, feet)).argmax()) if len(feet.which) else -1
+        off = float(feet.angles[worst] - _young(scene, feet)[worst]) if worst >= 0 else 0.0
+        if abs(off) > TOLERANCE.mean_angle:
+            return (
+                Status.UNDERRESOLVED,
+                None,
+                f"the mean contact angle on sphere {int(feet.which[worst])} is off by {off:.1f} "
+                f"degrees ({TOLERANCE.mean_angle:g} is allowed): take more "
+                "discretization.elements",
+            )
     inside = engulfed(scene, assembly, surface)
     if inside:
         return (
@@ -410,6 +427,27 @@ def _contact_objection(
             "the flat solution or with a smaller load",
         )
     return None
+
+
+def _young(scene: Scene, feet: Footing) -> Array:
+    """(k,) Young's angles of the wet spheres, degrees."""
+    solid = scene.substrate
+    assert solid is not None
+    angles = np.asarray(solid.contact_angle)
+    return np.asarray(angles[feet.which] if angles.ndim else np.full(len(feet.which), angles))
+
+
+def _under_base(scene: Scene, assembly: Assembly, surface: Surface) -> bool:
+    """Whether a membrane that passes through spheres has come down to the plane under them."""
+    trim = assembly.trim
+    assert trim is not None
+    assert scene.substrate is not None
+    base = getattr(scene.units.local_solid(scene.substrate), "base", None)
+    if base is None:
+        return False
+    outside = trim.outside(surface.points)
+    lowest = assembly.table.values @ surface.points[assembly.table.functions]
+    return bool((lowest[outside.share > 0][..., 2] <= base).any())
 
 
 def _named(

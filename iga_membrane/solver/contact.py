@@ -147,6 +147,10 @@ class ContactSet:
         """Depth by which the stiffest contact would give way without multipliers."""
         return float((self.delta * touch.traction).max(initial=0.0))
 
+    def near(self, points: Array) -> Array:
+        """(elements,) whether an element is near the solid."""
+        return np.asarray((self.touch(points).at.gap < 2.0 * self.length).any(axis=1))
+
     def tighten(self, touch: Touch, points: Array) -> None:
         """Take the tractions as multipliers and reduce ``delta``; lift points that dip too deep."""
         if not self.exact:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from ..scenes.scene import Scene
 from ..surface.sector import mirrors
 from ..surface.surface import Surface
 from ..terms import BodyDensity
+from ..terms.trimmed import line_density, wet_integral
 from ..terms.variations import element_points
 from .assembly import Assembly
 
@@ -26,6 +28,8 @@ class Footing:
     forces : (k, 3) of the membrane on them.
     radii : (k,)
     projected, areas : (k,) area of each wet spot, projected along its force and on the sphere.
+    polar, heights : (k,) mean polar angle (radians) from the sphere's top, and height, of its edge.
+    angles : (k,) mean contact angle in degrees.
     """
 
     which: Index
@@ -34,6 +38,9 @@ class Footing:
     radii: Array
     projected: Array
     areas: Array
+    polar: Array
+    heights: Array
+    angles: Array
 
     @property
     def total(self) -> Array:
@@ -42,7 +49,69 @@ class Footing:
 
 
 def footing(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensity) -> Footing:
-    """Sum the tractions by solid; unfolds the mirror images of a sector.
+    """Contact solid by solid, the mirror images of a sector unfolded.
+
+    Parameters
+    ----------
+    body : body density of the Lagrangian, so minus the pressure.
+    """
+    if assembly.trim is not None:
+        return _by_lines(scene, assembly, surface, body)
+    return _by_tractions(scene, assembly, surface, body)
+
+
+def _by_lines(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensity) -> Footing:
+    """From the contact lines on trimmed spheres.
+
+    Notes
+    -----
+    The force on a sphere is minus the energy's derivative by its place, ``oint q do / |g_h|`` along
+    its line (:mod:`iga_membrane.terms.trimmed`) and ``int grad(Q) N_z dA`` over its wetted cap.
+    """
+    trim = assembly.trim
+    assert trim is not None
+    line, term = trim.on_line(surface.points), trim.term
+    pull = line_density(line, assembly.tension, body)
+    pieces = (pull * (line.table.weights / np.abs(line.gh))[..., None]).sum(axis=1)
+    ex, ey, ez = body.gradient
+
+    def cap(density: Callable[[Array, Array, Index], Array]) -> Array:
+        return wet_integral(line, term, density)
+
+    pieces[:, 2] += cap(lambda x, n, which: n[..., 2] * (
+        body.constant + ex * x[..., 0] + ey * x[..., 1] + ez * x[..., 2]
+    ))  # fmt: skip
+    if ex or ey:
+        level = cap(lambda x, n, which: x[..., 2] * n[..., 2])
+        pieces[:, :2] += level[:, None] * [ex, ey]
+    projected = cap(lambda x, n, which: n[..., 2])
+    areas = cap(lambda x, n, which: np.ones(which.shape))
+    arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
+    away = line.x - term.solid.center_of(line.at.which)
+    polar = np.arctan2(np.linalg.norm(away[..., :2], axis=-1), away[..., 2])
+    cosine = np.einsum("kqi,kqi->kq", line.at.normal, line.m) / line.area
+    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    means = [arc.sum(axis=1), *((v * arc).sum(axis=1) for v in (polar, line.x[..., 2], angle))]
+    images = mirrors(scene.sector)
+    owner = np.concatenate([term.solid.nearest(line.x[:, 0] @ m).which for m in images])
+    which, inverse = np.unique(owner, return_inverse=True)
+
+    def total(values: Array) -> Array:
+        return np.bincount(inverse, np.tile(values, len(images)), len(which)).astype(float)
+
+    turned = np.concatenate([pieces @ m for m in images])
+    forces = np.zeros((len(which), 3))
+    np.add.at(forces, inverse, turned)
+    length, *sums = (total(mean) for mean in means)
+    polar, heights, angles = (value / length for value in sums)
+    centers, radii = term.solid.center_of(which), term.solid.radius_of(which)
+    return Footing(
+        which, centers, forces, radii, total(projected), total(areas), polar, heights, angles
+    )
+
+
+def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensity) -> Footing:
+    """From the tractions on spheres that the membrane follows.
 
     Notes
     -----
@@ -77,24 +146,31 @@ def footing(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensit
         1.0 - np.sqrt(1.0 - share)
     )
     areas = np.where(on_sphere, areas, projected)
-    return Footing(which, centers, forces, radii, projected, areas)
+    polar = np.arcsin(np.sqrt(share))
+    heights = centers[:, 2] + np.where(on_sphere, radii, 0.0) * np.cos(polar)
+    angles = np.full(len(which), 180.0)
+    return Footing(which, centers, forces, radii, projected, areas, polar, heights, angles)
 
 
 def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
-    """How many spheres near the wet ones have their centre inside the liquid.
+    """How many spheres near the membrane have their centre inside the liquid; where contact lines
+    are inside the membrane, of those that have none.
 
     The solid angle of a closed membrane from a point is 4 pi inside and 0 outside; an open
     membrane over a cell must lie above the centre.
     """
-    contact = assembly.contact
-    assert contact is not None
-    touch = contact.touch(surface.points)
-    close = touch.at.which[touch.at.gap < 2.0 * contact.length]
-    near = np.unique(close[close >= 0])
+    at = element_points(assembly.table, surface.points)
+    trim, contact = assembly.trim, assembly.contact
+    on = trim or contact
+    assert on is not None
+    beside = on.solid.nearest(at.x)
+    close = np.unique(beside.which[beside.gap < 2.0 * on.length])
+    near = close[close >= 0]
+    if trim is not None:
+        near = np.setdiff1d(near, trim.on_line(surface.points).at.which)
     if not len(near):
         return 0
-    centers = np.asarray(contact.solid.center_of(near)).reshape(-1, 3)
-    at = element_points(assembly.table, surface.points)
+    centers = np.asarray(on.solid.center_of(near)).reshape(-1, 3)
     x, c = at.x.reshape(-1, 3), (at.c * assembly.table.weights[..., None]).reshape(-1, 3)
     count = 0
     for center in centers:

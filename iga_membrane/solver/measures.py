@@ -12,7 +12,6 @@ from ..scenes.scene import Scene
 from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
-from ..terms import variations as vary
 from .apparent import apparent_angle, cassie_baxter_angle
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
@@ -42,8 +41,8 @@ def measures(
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
-    elif assembly.contact is not None:
-        values |= _on_an_area(scene, assembly, surface, body, values)
+    elif assembly.contact is not None or assembly.trim is not None:
+        values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
         values |= _droplet(scene, surface, values["A_wet"], body, scale)
     elif scene.kind == "film_between_rings":
@@ -57,17 +56,13 @@ def measures(
 
 def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, float]:
     """Energies by kind and areas; the potential energy of weight is zero at the origin."""
-    scale, copies, table = scene.units, assembly.copies, assembly.table
-    at = vary.element_points(table, surface.points)
+    scale, copies = scene.units, assembly.copies
     local = scene.local_terms()
     gravity = sum((t.density() for t in local if isinstance(t, Gravity)), BodyDensity())
-    area, _ = vary.energies(table, at, [])
+    area, wetting, wet = assembly.interface(surface)
     weight = assembly.body_integral(surface, gravity)
     tension = sum(t.gamma for t in local if isinstance(t, SurfaceTension))
-    none = BodyDensity()
-    lines = sum(t.energy(edge, surface.points, t.strength, none) for t, edge in assembly.lines)
-    wet = sum(t.energy(edge, surface.points, 1.0, none) for t, edge in assembly.lines)
-    e_surf = copies * (tension * area + lines) * scale.energy
+    e_surf = copies * (tension * area + wetting) * scale.energy
     lift = _world_weight(scene, assembly, surface)
     return {
         "energy": copies * assembly.energies(surface).total * scale.energy + lift,
@@ -97,32 +92,36 @@ def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     return float(-inside * sum(pull, np.zeros(3)) @ origin)
 
 
-def _on_an_area(
+def _on_solids(
     scene: Scene,
     assembly: Assembly,
     surface: Surface,
     body: BodyDensity,
     values: dict[str, float],
 ) -> dict[str, float]:
-    """A drop whose foot is a contact area: the membrane is its whole skin."""
+    """A drop whose membrane goes on over its foot: it lies on solids or passes through them."""
     scale, found = scene.units, footing(scene, assembly, surface, body)
-    lying = float(found.areas.sum()) * scale.length**2
-    known = values["A_wet"]  # the middle of a foot that the membrane leaves out
+    wet = float(found.areas.sum()) * scale.length**2
+    known = 0.0  # the middle of a foot that the membrane leaves out
+    lying = wet if assembly.trim is None else 0.0
+    if assembly.trim is None:
+        known = values["A_wet"]
     top = _farthest(surface, lambda x: x[..., 2])
     base = base_area(scene, found) + known / scale.length**2
     foot = float(np.sqrt(base / np.pi))
     angles = {}
     if isinstance(scene.substrate, (SphereLattice, Spheres)) and base > 0:
         height = float(top[2])
+        young = float(found.angles @ found.areas / found.areas.sum())
         angles = {
             "apparent_angle": apparent_angle(height, body, assembly.tension),
             "cassie_baxter_angle": cassie_baxter_angle(
-                float(found.areas.sum()), float(found.projected.sum()), base, 180.0
+                float(found.areas.sum()), float(found.projected.sum()), base, young
             ),
         }
     return angles | {
         "A_LG": values["A_LG"] - lying,
-        "A_wet": lying + known,
+        "A_wet": wet + known,
         "height": float(top[2]) * scale.length,
         "equator_radius": _width(surface) * scale.length,
         "p_apex": -(body.constant + float(np.dot(body.gradient, top))) * scale.pressure,
@@ -143,19 +142,19 @@ def _cell(
     scale, solid = scene.units, scene.units.local_sphere(scene.substrate)
     found = footing(scene, assembly, surface, body)
     force = -float(found.total[2])
-    radius = min(1.0, float(np.sqrt(found.projected.sum() / np.pi)) / solid.radius)
-    polar = float(np.arcsin(radius))
-    height = solid.radius * 2.0 * np.sin(0.5 * polar) ** 2
-    contact = solid.center[2] + solid.radius - height
+    polar, contact = float(found.polar[0]), float(found.heights[0])
+    radius = solid.radius * np.sin(polar)
+    lying = 0.0 if assembly.contact is None else float(found.areas.sum())
     wet = float(found.areas.sum())
     edge, corner = _edge_heights(surface)
     press = -body.constant * float(found.projected.sum())
     return {
-        "A_LG": values["A_LG"] - wet * scale.length**2,
+        "A_LG": values["A_LG"] - lying * scale.length**2,
         "A_wet": wet * scale.length**2,
         "phi_deg": float(np.degrees(polar)),
-        "contact_radius": solid.radius * radius * scale.length,
-        "cap_height": height * scale.length,
+        "contact_radius": radius * scale.length,
+        "cap_height": solid.radius * (1.0 - np.cos(polar)) * scale.length,
+        "contact_angle_measured": float(found.angles[0]),
         "sag": (contact - edge) * scale.length,
         "z_edge": edge * scale.length,
         "z_corner": corner * scale.length,

@@ -118,6 +118,8 @@ def newton(
     count = assembly.multipliers
     if assembly.contact is not None:
         assembly.contact.begin()
+    if assembly.trim is not None:
+        assembly.trim.begin()
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
         if multipliers is None and count:
@@ -162,7 +164,7 @@ def _iterate(
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
-        displacement = motion.displacement(direction.step)
+        displacement = motion.displacement(assembly.extended(direction.step))
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")
@@ -231,7 +233,7 @@ def _direction(system: System, *, plain: bool) -> _Direction:
     factor = Bordered(system.matrix, border)
     index, shift = factor.index, 0.0
     while factor.index > 0 and not plain and shift < 1e8:
-        shift = max(10.0 * shift, 1e-3)
+        shift = max(8.0 * shift, 1e-3)  # never 1: a negative pivot would vanish
         factor = Bordered(system.matrix, border, shift * diagonal)
     step, multipliers = factor.solve(-system.gradient, -system.constraints)
     return _Direction(step, -multipliers, shift, index)

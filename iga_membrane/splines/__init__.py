@@ -9,24 +9,32 @@ from .basis import (
     ring_basis,
     uniform_basis,
 )
+from .cut import Cut, cut
+from .faces import Faces, faces_between, jumps
 from .grading import Grading
 from .knots import check_knots, greville, insertion_matrix, open_knots
 from .pillow import pillow_space
 from .polar import close_pole, net_of, points_of, ring_angles
 from .space import Space, tensor_space
-from .table import EdgeTable, Table
+from .table import EdgeTable, LineTable, Table
 
 __all__ = [
     "Basis",
+    "Cut",
     "EdgeTable",
+    "Faces",
     "Grading",
+    "LineTable",
     "Space",
     "Table",
     "bspline_basis",
     "check_knots",
     "close_pole",
+    "cut",
+    "faces_between",
     "greville",
     "insertion_matrix",
+    "jumps",
     "lagrange_basis",
     "line_basis",
     "net_of",

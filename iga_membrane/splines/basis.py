@@ -84,9 +84,13 @@ class Basis:
     def at(self, t: ArrayLike, derivative: int = 0) -> tuple[Index, Array]:
         """Functions alive at each point and their values: two arrays (points, p + 1)."""
         element, u = self.locate(t)
+        return self.functions[element], self.inside(element, u[:, None], derivative)[:, 0]
+
+    def inside(self, elements: Index, u: Array, derivative: int = 0) -> Array:
+        """Values (k, q, p + 1) of the functions of elements (k,) at local points (k, q)."""
         polynomials = bernstein(u, self.degree, derivative)
-        values = np.einsum("tj,tij->ti", polynomials, self.operators[element])
-        return self.functions[element], values / self.sizes[element][:, None] ** derivative
+        values = polynomials @ self.operators[elements].transpose(0, 2, 1)
+        return np.asarray(values / self.sizes[elements][:, None, None] ** derivative)
 
     def matrix(self, t: ArrayLike, derivative: int = 0) -> Array:
         """Dense collocation matrix (points, n): ``matrix @ coefficients`` is the curve at ``t``."""

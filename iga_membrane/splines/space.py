@@ -100,7 +100,7 @@ class Space:
         for i, j in _ORDERS[: 6 if second else 3]:
             product = one[i][:, :, None, :, None] * two[j][:, None, :, None, :]
             rows[i, j] = product.reshape(len(chosen), len(local), -1)
-        rows = self._finish(rows, chosen)
+        rows = self.finished(rows, chosen)
         h1, h2 = self.bases[0].sizes[e1], self.bases[1].sizes[e2]
         start = np.stack([self.bases[0].breaks[e1], self.bases[1].breaks[e2]], axis=-1)
         size = np.stack([h1, h2], axis=-1)
@@ -128,18 +128,25 @@ class Space:
         rows : derivative ``(i, j)`` to an array (points, local).
         """
         xi = np.atleast_2d(np.asarray(xi, float))
-        e1, _ = self.bases[0].locate(xi[:, 0])
-        e2, _ = self.bases[1].locate(xi[:, 1])
+        e1, u = self.bases[0].locate(xi[:, 0])
+        e2, v = self.bases[1].locate(xi[:, 1])
         chosen = e1 * self.bases[1].elements + e2
-        one = [self.bases[0].at(xi[:, 0], k)[1] for k in range(orders + 1)]
-        two = [self.bases[1].at(xi[:, 1], k)[1] for k in range(orders + 1)]
+        rows = self.inside(chosen, np.stack([u, v], axis=-1)[:, None], orders)
+        return self.functions[chosen], {key: row[:, 0] for key, row in rows.items()}
+
+    def inside(self, elements: Index, u: Array, orders: int = 2) -> Rows:
+        """Functions of elements (k,) at local points (k, q, 2) in [0, 1]^2: derivative
+        ``(i, j)`` to an array (k, q, local)."""
+        e1, e2 = np.divmod(elements, self.bases[1].elements)
+        one = [self.bases[0].inside(e1, u[..., 0], k) for k in range(orders + 1)]
+        two = [self.bases[1].inside(e2, u[..., 1], k) for k in range(orders + 1)]
+        shape = (*u.shape[:2], self.functions.shape[1])
         rows: Rows = {
-            (i, j): (one[i][:, :, None] * two[j][:, None, :]).reshape(len(xi), 1, -1)
+            (i, j): (one[i][..., :, None] * two[j][..., None, :]).reshape(shape)
             for i, j in _ORDERS
             if i + j <= orders
         }
-        rows = self._finish(rows, chosen)
-        return self.functions[chosen], {key: row[:, 0] for key, row in rows.items()}
+        return self.finished(rows, elements)
 
     def edge_table(
         self, edge: str, points: int | None = None, elements: Index | None = None
@@ -181,8 +188,8 @@ class Space:
         grids = np.meshgrid(self.bases[0].abscissae, self.bases[1].abscissae, indexing="ij")
         return np.stack(grids, axis=-1)
 
-    def _finish(self, rows: Rows, elements: Index) -> Rows:
-        """Make tensor products rational, then combine them at a pole. Rows (e, q, local)."""
+    def finished(self, rows: Rows, elements: Index) -> Rows:
+        """Tensor products (e, q, local) made rational, then combined at a pole."""
         if self.weights is not None:
             tensor = _tensor_functions(self.bases)[elements]
             rows = _rational(rows, self.weights.ravel()[tensor][:, None])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -55,6 +55,12 @@ class Table:
         value, d1, d2 = np.split(field, 3, axis=1)
         return value, d1, d2
 
+    def weighted(self, share: Array) -> Table:
+        """The same points, each element with a share (elements,) of its weight."""
+        other = replace(self, weights=self.weights * share[:, None])
+        other.__dict__["stacked"] = self.stacked
+        return other
+
 
 _FIRST_ORDER = ("functions", "values", "d1", "d2", "weights", "parameters")
 
@@ -85,3 +91,24 @@ class EdgeTable:
             self.weights,
             columns,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class LineTable:
+    """Functions of a space along lines inside its elements, each the graph of one parameter over
+    the other.
+
+    Attributes
+    ----------
+    functions : (pieces, local) global number of each local function.
+    rows : the functions and their derivatives 1, 2, 11, 12, 22, each (pieces, points, local).
+    weights : (pieces, points) quadrature weights of the parameter along the line; at ends +1 or -1.
+    across : (pieces,) 0 or 1, the parameter that the line is a graph of.
+    rising : (pieces,) sign of the level's slope along that parameter.
+    """
+
+    functions: Index
+    rows: tuple[Array, ...]
+    weights: Array
+    across: Index
+    rising: Index

@@ -7,6 +7,7 @@ from .gravity import Gravity
 from .sphere_wetting import SphereContactLine
 from .tension import SurfaceTension
 from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term
+from .trimmed import TrimmedContactLine
 from .volume import Centroid, Pressure, Volume
 
 __all__ = [
@@ -25,5 +26,6 @@ __all__ = [
     "SphereContactLine",
     "SurfaceTension",
     "Term",
+    "TrimmedContactLine",
     "Volume",
 ]

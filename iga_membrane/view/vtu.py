@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array, Index
+from ..arrays import Index
+from ..surface.bezier import bezier_net
 from ..surface.surface import Surface
 
 if TYPE_CHECKING:
@@ -14,17 +15,6 @@ if TYPE_CHECKING:
 
 
 BEZIER_QUADRILATERAL = 77
-
-
-def bezier_net(surface: Surface) -> Array:
-    """(elements, p1 + 1, p2 + 1, 4) homogeneous Bezier points ``(w x, w)`` of every element."""
-    space, net = surface.space, surface.net
-    weights = np.ones(space.net_shape) if space.weights is None else space.weights
-    homogeneous = np.concatenate([net * weights[..., None], weights[..., None]], axis=-1)
-    one, two = space.bases
-    local = homogeneous[one.functions[:, None, :, None], two.functions[None, :, None, :]]
-    cells = np.einsum("eai,fbj,efabc->efijc", one.operators, two.operators, local, optimize=True)
-    return np.asarray(cells.reshape(-1, *cells.shape[2:]))
 
 
 def bezier_order(p1: int, p2: int) -> Index:

@@ -1,0 +1,130 @@
+"""What holds the control points that the liquid does not: those inside a solid or nearly so.
+
+Control points without any part outside follow their neighbours harmonically; those with a little
+part outside are tied to them by the jump of the highest derivative.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_array, diags_array
+from scipy.sparse.linalg import splu
+
+from ..arrays import Array, Index, Mask
+from ..splines import Faces, Space, jumps
+
+STRENGTH = 0.02
+"""Factor of the jumps' energy over the tension."""
+FREE = 5
+"""Iterations after which elements stay tied that no longer need it: they could alternate for
+ever."""
+
+
+class Ties:
+    """Ties across the faces of some elements.
+
+    Parameters
+    ----------
+    elements, portion : (elements,) of the space, and the portion of each that is in the sector.
+    faces : between them.
+    unknowns : (elements, local) unknown of each local function, -1 for none; size : their number.
+    """
+
+    def __init__(
+        self,
+        space: Space,
+        elements: Index,
+        portion: Array,
+        faces: Faces,
+        unknowns: Index,
+        size: int,
+    ) -> None:
+        self._space, self._elements, self._portion = space, elements, portion
+        self._faces, self._unknowns, self._size = faces, unknowns, size
+        self.begin()
+
+    def begin(self) -> None:
+        """Free to choose again."""
+        none = np.zeros(len(self._elements), bool)
+        self._held, self._touched, self._last = none, none, (none, none)
+        self._calls = 0
+
+    def hold(self, active: Mask, touched: Mask) -> None:
+        """Choose for a state whose ``active`` elements have a part outside, the ``touched`` ones
+        another inside."""
+        self._calls += 1
+        before, self._last = self._last, (active, touched)
+        held = active
+        if self._calls > FREE:
+            if not (active & ~self._held).any() and not (touched & ~self._touched).any():
+                return
+            held, touched = active | before[0], touched | before[1]
+        if np.array_equal(held, self._held) and np.array_equal(touched, self._touched):
+            return
+        self._held, self._touched = held, touched
+        for name in ("across", "idle", "_harmonic"):
+            self.__dict__.pop(name, None)
+
+    @cached_property
+    def across(self) -> tuple[Index, Array, Array]:
+        """Functions (k, 2 local), jumps (k, q, 2 local) and weights (k, q) of the tied faces."""
+        f = self._faces
+        first, second = self._held[f.first], self._held[f.second]
+        cuts = self._touched[f.first] | self._touched[f.second]
+        tied = f.part(first & second & cuts)
+        functions, rows, weights = jumps(self._space, self._elements, tied)
+        portion = np.minimum(self._portion[tied.first], self._portion[tied.second])
+        return functions, rows, STRENGTH * weights * portion[:, None]
+
+    def energy(self, points: Array) -> float:
+        """Energy of the ties, tension 1."""
+        functions, rows, weights = self.across
+        jump = rows @ points[functions]
+        return float(0.5 * ((jump**2).sum(axis=-1) * weights).sum())
+
+    def forces(self, points: Array) -> Array:
+        """(faces, 2 local, 3)"""
+        functions, rows, weights = self.across
+        jump = rows @ points[functions]
+        return np.asarray(rows.transpose(0, 2, 1) @ (jump * weights[..., None]))
+
+    def hessian(self, directions: Array) -> Array:
+        """(faces, 2 local, 2 local) along directions (control points, 3)."""
+        functions, rows, weights = self.across
+        d = directions[functions]
+        blocks = rows.transpose(0, 2, 1) @ (rows * weights[..., None])
+        return np.asarray(blocks * (d @ d.transpose(0, 2, 1)))
+
+    @cached_property
+    def idle(self) -> Index:
+        """Unknowns of which nothing lies outside."""
+        lonely = np.ones(self._size + 1, bool)
+        lonely[self._unknowns[self._held]] = False
+        return np.flatnonzero(lonely[:-1])
+
+    def extended(self, step: Array) -> Array:
+        """A step of the unknowns in which the idle ones follow the others harmonically."""
+        if not len(self.idle):
+            return step
+        graph, factor = self._harmonic
+        full = step.copy()
+        full[self.idle] = 0.0
+        full[self.idle] = factor.solve(-(graph @ full)[self.idle])
+        return full
+
+    @cached_property
+    def _harmonic(self) -> tuple[Any, Any]:
+        """Laplacian of the graph of control points, and its factor on the idle ones."""
+        u = self._unknowns
+        lonely = np.zeros(self._size + 1, bool)
+        lonely[self.idle] = True
+        u = u[lonely[u].any(axis=1)]
+        i, j = np.broadcast_arrays(u[:, :, None], u[:, None, :])
+        free = (i >= 0) & (j >= 0)
+        i, j = i[free], j[free]
+        links = coo_array((np.ones(len(i)), (i, j)), (self._size, self._size)).tocsr()
+        graph = (diags_array(links.sum(axis=1)) - links).tocsr()
+        return graph, splu(graph[self.idle][:, self.idle].tocsc())

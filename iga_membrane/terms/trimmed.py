@@ -1,0 +1,228 @@
+"""Contact lines where the membrane passes through a solid, at any contact angle.
+
+The spline runs smoothly through the solid; only its part outside is liquid-gas interface, the
+wetted surface inside the line ``gap(x(xi)) = 0`` is the solid's own. With ``m = a_1 x a_2``,
+``J = |m|``, the solid's normal ``n`` and the flux ``c = Q(x)`` of the body density, the first
+variation of
+
+    int_{gap > 0} (gamma J + c m_z) dxi + int_wet (-gamma cos(theta) - c n_z) dA
+
+along ``N_I d_I`` is ``int_{gap > 0} F_I dxi + oint N_I d_I . q do / |g_h|`` with
+
+    q = gamma (J n - cos(theta) m) + c (m_z n - n_z m),
+
+where the line is a graph of the coordinate ``h`` over the other, ``o``, and ``g_h`` the slope of
+the gap along ``h``. The wetted side itself never enters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, Index
+from ..checks import number
+from ..solids import Nearest, Plane, Sphere, SphereLattice, Spheres
+from ..splines import LineTable
+from ..splines.quadrature import gauss
+from .term import BodyDensity, Scale, Term
+from .variations import cross, flux, flux_gradient
+
+CapDensity = Callable[[Array, Array, Index], Array]
+"""Positions and normals (..., 3) on a wetted surface and its spheres' numbers (...) to values."""
+ARC = 12
+"""Gauss points along an arc of a sphere."""
+
+
+@dataclass(frozen=True, eq=False)
+class TrimmedContactLine(Term):
+    """Energy ``-gamma cos(theta)`` of the solid's wetted surface, the membrane passing through it.
+
+    Attributes
+    ----------
+    gamma : surface tension.
+    solid : sphere, lattice or list of spheres, with its contact angles.
+    """
+
+    gamma: float
+    solid: Plane | Sphere | SphereLattice | Spheres
+    name = "wetting"
+
+    def __post_init__(self) -> None:
+        number("liquid.surface_tension", self.gamma, above=0.0)
+
+    def scaled(self, scale: Scale) -> TrimmedContactLine:
+        return TrimmedContactLine(self.gamma / scale.tension, scale.local_solid(self.solid))
+
+    def cosine(self, which: Index) -> Array:
+        """(...) cosine of the contact angle on spheres by their numbers."""
+        angles = np.radians(np.asarray(self.solid.contact_angle))
+        return np.cos(angles[which] if angles.ndim else np.full(np.shape(which), angles))
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """Geometry at points of contact lines, arrays (pieces, points, ...).
+
+    Attributes
+    ----------
+    table : functions there; ``across`` the coordinate h and ``rising`` the sign of ``g_h``.
+    x, m, area : position, ``a_1 x a_2`` and its length.
+    ah, ao, xhh, xho : derivatives along h and o.
+    at : nearest surface of the solid; cosine of its contact angle.
+    gh, go : slopes of the gap.
+    """
+
+    table: LineTable
+    x: Array
+    a1: Array
+    a2: Array
+    m: Array
+    area: Array
+    ah: Array
+    ao: Array
+    xhh: Array
+    xho: Array
+    at: Nearest
+    cosine: Array
+    gh: Array
+    go: Array
+
+    @property
+    def tangent(self) -> Array:
+        """(pieces, points, 3) derivative of the position along o."""
+        return np.asarray(self.ao - (self.go / self.gh)[..., None] * self.ah)
+
+
+def on_line(term: TrimmedContactLine, table: LineTable, points: Array) -> Line:
+    """Geometry of a surface with control points (count, 3) on its contact lines."""
+    x, a1, a2, x11, x12, x22 = (rows @ points[table.functions] for rows in table.rows)
+    m = cross(a1, a2)
+    one = (table.across == 0)[:, None, None]
+    ah, ao, xhh = np.where(one, a1, a2), np.where(one, a2, a1), np.where(one, x11, x22)
+    at = term.solid.nearest(x)
+    gh, go = (np.einsum("kqi,kqi->kq", at.normal, a) for a in (ah, ao))
+    area = np.sqrt(np.einsum("kqi,kqi->kq", m, m))
+    return Line(
+        table, x, a1, a2, m, area, ah, ao, xhh, x12, at, term.cosine(at.which), gh, go
+    )  # fmt: skip
+
+
+def line_density(line: Line, tension: float, body: BodyDensity) -> Array:
+    """(pieces, points, 3) the vector q: membrane's edge and Young's term in one."""
+    c = flux(body, line.x)[..., None]
+    n, m = line.at.normal, line.m
+    q = c * (m[..., 2:] * n - n[..., 2:] * m)
+    if tension:
+        q = q + tension * (line.area[..., None] * n - line.cosine[..., None] * m)
+    return np.asarray(q)
+
+
+def line_forces(line: Line, tension: float, body: BodyDensity) -> Array:
+    """(pieces, local, 3) derivative of the energy by local control points."""
+    q = line_density(line, tension, body) * (line.table.weights / np.abs(line.gh))[..., None]
+    return np.asarray(line.table.rows[0].transpose(0, 2, 1) @ q)
+
+
+def line_hessian(line: Line, tension: float, body: BodyDensity, directions: Array) -> Array:
+    """(pieces, local, local) second derivative along directions (pieces, local, 3), with the part
+    that is owed to the line's own motion; :func:`end_hessian` completes it.
+
+    Notes
+    -----
+    At fixed parameters the density varies by ``q_J``; the graph moves by ``h_J = -g_J / g_h``, and
+    the measure ``1 / |g_h|`` by ``e_J``. The antisymmetric part is a total derivative along the
+    line and drops out.
+    """
+    n0, n1, n2 = (rows[..., None] for rows in line.table.rows[:3])
+    one = (line.table.across == 0)[:, None, None, None]
+    nh = np.where(one, n1, n2)
+    d = directions[:, None]  # (pieces, 1, local, 3)
+    n, m, bend = (v[:, :, None] for v in (line.at.normal, line.m, line.at.bend[..., None]))
+    a1, a2, ah = (v[:, :, None] for v in (line.a1, line.a2, line.ah))
+    area, cosine = line.area[..., None, None], line.cosine[..., None, None]
+    gh = line.gh[..., None, None]
+    c, slope = flux(body, line.x)[..., None, None], flux_gradient(body, line.x)[:, :, None]
+
+    def dot(u: Array, v: Array) -> Array:
+        return np.asarray((u * v).sum(axis=-1, keepdims=True))
+
+    def density(n_: Array, m_: Array, area_: Array, c_: Array) -> Array:
+        """Variation of q by those of n, m, J and c."""
+        varied = c_ * (m[..., 2:] * n - n[..., 2:] * m)
+        varied = varied + c * (
+            m_[..., 2:] * n + m[..., 2:] * n_ - n_[..., 2:] * m - n[..., 2:] * m_
+        )
+        return np.asarray(varied + tension * (area_ * n + area * n_ - cosine * m_))
+
+    # at fixed parameters
+    m_j = n1 * cross(*np.broadcast_arrays(d, a2)) + n2 * cross(*np.broadcast_arrays(a1, d))
+    area_j = dot(m, m_j) / area
+    nd = dot(n, d)
+    n_j = n0 * bend * (d - n * nd)
+    c_j = n0 * dot(slope, d)
+    g_j = n0 * nd
+    f_j = tension * area_j + c_j * m[..., 2:] + c * m_j[..., 2:]
+    q_j = density(n_j, m_j, area_j, c_j)
+    # along h
+    x1h = np.where(one[..., 0], line.xhh, line.xho)[:, :, None]
+    x2h = np.where(one[..., 0], line.xho, line.xhh)[:, :, None]
+    m_h = cross(x1h, a2) + cross(a1, x2h)
+    n_h = bend * (ah - n * gh)
+    q_h = density(n_h, m_h, dot(m, m_h) / area, dot(slope, ah))
+    g_hh = dot(n, line.xhh[:, :, None]) + bend * (dot(ah, ah) - gh**2)
+    g_jh = nh * nd + n0 * dot(n_h, d)
+    h_j = -g_j / gh
+    e_j = -(g_jh + h_j * g_hh) / gh
+    q = line_density(line, tension, body)[:, :, None]
+    p_j = q_j + h_j * q_h + e_j * q
+    w = (line.table.weights / np.abs(line.gh))[..., None, None]
+    left = n0 * d * w
+    blocks = np.einsum("kqai,kqbi->kab", left, p_j, optimize=True)
+    dq = dot(d, q)
+    blocks += np.einsum("kqa,kqb->kab", (nh * dq * w)[..., 0], h_j[..., 0], optimize=True)
+    blocks += np.einsum("kqa,kqb->kab", (f_j * w)[..., 0], g_j[..., 0], optimize=True)
+    return np.asarray(0.5 * (blocks + blocks.transpose(0, 2, 1)))
+
+
+def end_hessian(ends: Line, tension: float, body: BodyDensity, directions: Array) -> Array:
+    """(ends, local, local) what the second derivative owes to the ends of the graphs."""
+    along = np.einsum("kqa,kai->kqai", ends.table.rows[0], directions)
+    q = line_density(ends, tension, body)
+    work = np.einsum("kqai,kqi->kqa", along, q)
+    gap = np.einsum("kqai,kqi->kqa", along, ends.at.normal)
+    grazing = np.abs(ends.go) <= 1e-13 * np.abs(ends.gh)
+    size = np.abs(ends.gh) * np.where(grazing, np.inf, np.abs(ends.go))
+    w = ends.table.weights * ends.table.rising[:, None] / size
+    half = np.einsum("kqa,kqb,kq->kab", work, gap, 0.5 * w, optimize=True)
+    return np.asarray(half + half.transpose(0, 2, 1))
+
+
+def wet_integral(line: Line, term: TrimmedContactLine, density: CapDensity) -> Array:
+    """(pieces,) integrals over the wetted surface, by lines round the top of each sphere.
+
+    With ``X`` from the centre, an integral over the cap is ``oint G (X Y' - Y X') / (X^2 + Y^2)``,
+    ``G`` the integral along the meridian from the top to the line.
+
+    Parameters
+    ----------
+    density : position and normal (..., 3), spheres (...) to the integrand (...).
+    """
+    which = line.at.which
+    center, r = term.solid.center_of(which), term.solid.radius_of(which)[..., None]
+    away = line.x - center
+    level = np.linalg.norm(away[..., :2], axis=-1)
+    # the wetted side lies to the left: along h the gap rises
+    left = np.where(line.table.across == 1, 1, -1) * line.table.rising
+    turn = (away[..., 0] * line.tangent[..., 1] - away[..., 1] * line.tangent[..., 0]) / level**2
+    polar = np.arctan2(level, away[..., 2])[..., None]
+    u, w = gauss(ARC)
+    angle = polar * u
+    out = away[..., None, :2] / level[..., None, None]
+    normal = np.concatenate([np.sin(angle)[..., None] * out, np.cos(angle)[..., None]], axis=-1)
+    x = center[..., None, :] + r[..., None] * normal
+    value = density(x, normal, np.broadcast_to(which[..., None], angle.shape))
+    whole = (value * np.sin(angle) * polar * r**2) @ w
+    return np.asarray((whole * turn * line.table.weights).sum(axis=1) * left)
