@@ -30,6 +30,26 @@ class Liquid:
         object.__setattr__(self, "surface_tension", tension)
         object.__setattr__(self, "density", number("liquid.density", self.density, least=0.0))
 
+    @classmethod
+    def water(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 72.8 mN/m, 998 kg/m^3."""
+        return cls(72.8e-3, 998.0)
+
+    @classmethod
+    def glycerol(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 63 mN/m, 1261 kg/m^3."""
+        return cls(63e-3, 1261.0)
+
+    @classmethod
+    def ethanol(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 22.3 mN/m, 789 kg/m^3."""
+        return cls(22.3e-3, 789.0)
+
+    @classmethod
+    def mercury(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 485 mN/m, 13546 kg/m^3."""
+        return cls(485e-3, 13546.0)
+
 
 @dataclass(frozen=True)
 class Discretization:
