@@ -191,6 +191,10 @@ def _grid(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     if total > MOST:
         raise SceneError(f"over: {total} points, at most {MOST}")
     plain = [np.asarray(values).tolist() for values in over.values()]
+    for name, values in zip(over, plain, strict=True):
+        for i, value in enumerate(values):
+            if not isinstance(value, (str, bool)):
+                number(f"over[{name!r}][{i}]", value)
     points = [dict(zip(over, values, strict=True)) for values in itertools.product(*plain)]
     if len({RecordStore.key(point) for point in points}) < len(points):
         raise SceneError("over: a value is given twice; give it once")
@@ -202,8 +206,8 @@ def _question(options: SolverOptions) -> str:
 
 
 def _fingerprint(scene: Scene) -> str:
-    """Of a scene by its words, else by its content."""
-    return digest(scene.description or scene)
+    """Of a scene by its words and terms; a scene without words also by its start."""
+    return digest([scene.description or scene.surface, scene.terms])
 
 
 def _check_mixed(
