@@ -42,6 +42,7 @@ def asperity_cell(
     discretization: Discretization | None = None,
     penalty: float | None = None,
     penetration_tolerance: float = 1e-2,
+    contact_line: str = "auto",
 ) -> Scene:
     """Cell of a rough surface under pressure.
 
@@ -53,6 +54,8 @@ def asperity_cell(
     penalty : None for exact contact, else traction over depth in units of tension over squared
         radius.
     penetration_tolerance : depth over the radius beyond which a state is no success.
+    contact_line : "trimmed", the membrane passes through the sphere, as "auto" chooses too below
+        180 degrees.
 
     Raises
     ------
@@ -62,6 +65,7 @@ def asperity_cell(
     liquid, asked = with_defaults(liquid, discretization)
     record("sphere", sphere, Sphere)
     choice("cell.shape", shape, SHAPES)
+    choice("solver.contact_line", contact_line, ("auto", "trimmed"))
     size = number("cell.size", size, above=0.0)
     pressure = number("cell.pressure", pressure, above=0.0)
     r, (x, y, z) = sphere.radius, sphere.center
@@ -79,6 +83,11 @@ def asperity_cell(
         raise SceneError(
             f'discretization.model = "{model}": the sphere stands at x, y = {x:g}, {y:g}; '
             f'"{smallest}" is the smallest model here'
+        )
+    if penalty is not None and sphere.contact_angle < 180.0:
+        raise SceneError(
+            'solver.contact = "penalty": only at 180 degrees; leave it out below, contact lines '
+            "need none"
         )
     area = size**2 if shape == "square" else 0.25 * np.pi * size**2
     unit = (x / r, y / r, z / r)
@@ -101,6 +110,7 @@ def asperity_cell(
             discretization=Discretization(mesh.space, mesh.degree, mesh.elements, model),
             penalty=penalty,
             penetration_tolerance=penetration_tolerance,
+            contact_line=contact_line,
         )
 
     return Scene(
@@ -160,7 +170,9 @@ def _drape(pressure: float, area: float, contact_angle: float) -> _Drape:
         # through the sphere the membrane goes on as it pleases; its parameter must be smooth
         dome = z[0] + 0.5 * spot * np.tan(slope) * (1.0 - inside**2)
         r, z = np.concatenate([spot * inside, r[1:]]), np.concatenate([dome, z[1:]])
-        return _Drape(r / outer, r, z)
+        even = np.linspace(0.0, outer, 8001)
+        closer = _gathered(even, spot, 1.0 - float(np.cos(slope)) ** 1.5)
+        return _Drape(even / outer, closer, np.interp(closer, r, z))
     cap = polar * inside
     r, z = np.concatenate([np.sin(cap), r[1:]]), np.concatenate([np.cos(cap) - 1.0, z[1:]])
     walked = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
@@ -171,6 +183,17 @@ def _drape(pressure: float, area: float, contact_angle: float) -> _Drape:
     return _Drape(even, np.interp(share, walked, r), np.interp(share, walked, z))
 
 
+def _gathered(radius: Array, spot: float, part: float) -> Array:
+    """Radii drawn towards the contact line: their steps there are shorter by ``part``, as a steep
+    membrane's are longer than their projection, and somewhat more."""
+    away = (radius - spot) / (GATHERED * spot)
+    middle = radius**2 / (radius**2 + (0.2 * spot) ** 2)
+    rim = (1.0 - (radius / radius[-1]) ** 4) ** 2
+    return radius - part * (radius - spot) * np.exp(-(away**2)) * middle * rim
+
+
+GATHERED = 0.65
+"""Width, over the spot's radius, of the zone of shorter steps on either side of its edge."""
 FINE = 0.6
 """Part of the elements over the wet spot and its surroundings."""
 STEEPEST = float(np.radians(87.0))

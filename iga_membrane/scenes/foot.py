@@ -12,9 +12,18 @@ from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..splines import Grading, points_of
 from ..surface.ring import axisymmetric, drop_space
-from ..surface.supports import Fixed, Sector, Sliding, Support
+from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
-from ..terms import Contact, LineTerm, PlaneContactLine, Scale, SphereContactLine, Term
+from ..terms import (
+    Contact,
+    LineTerm,
+    PlaneContactLine,
+    Scale,
+    SphereContactLine,
+    Term,
+    TrimmedContactLine,
+)
+from ..terms.term import AnySolid
 from .asperities import estimated_foot, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
@@ -31,6 +40,7 @@ class Question:
     start: Surface | str | None
     liquid: Liquid
     law: Contact
+    contact_line: str
 
     @property
     def down(self) -> float:
@@ -40,7 +50,7 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class Foot:
-    """Start, support and price of a foot."""
+    """Start, support and price of a foot; ``predictor`` : other terms that give a better start."""
 
     surface: Surface
     sector: Sector
@@ -50,17 +60,26 @@ class Foot:
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
+    predictor: Sequence[Term] = ()
+
+
+CONTACT_LINES = ("auto", "conforming", "trimmed")
 
 
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
-    if not isinstance(parts.substrate, (Plane, Sphere)):
-        return _on_an_area(parts)
-    if parts.substrate.contact_angle < 180.0:
+    solid, way = parts.substrate, parts.contact_line
+    refused = "trimmed" if isinstance(solid, Plane) else "conforming"
+    if way == refused and not isinstance(solid, Sphere):
+        raise SceneError(
+            f'solver.contact_line = "{way}": not available here; a plane\'s contact line is '
+            '"conforming", those on asperities are "trimmed", a sphere has either; "auto" knows'
+        )
+    line = isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0
+    if line and way != "trimmed":
         return _on_a_line(parts)
     exact = parts.law.penalty is None and parts.start is None
-    return _on_the_plane(parts) if isinstance(parts.substrate, Plane) and exact \
-        else _on_an_area(parts)  # fmt: skip
+    return _on_the_plane(parts) if isinstance(solid, Plane) and exact else _on_an_area(parts)
 
 
 def _on_a_line(parts: Question) -> Foot:
@@ -88,14 +107,10 @@ def _on_a_line(parts: Question) -> Foot:
 def _on_an_area(parts: Question) -> Foot:
     """The whole skin, lying on the solid with its foot."""
     substrate, scale = parts.substrate, parts.scale
-    for angle in np.atleast_1d(np.asarray(substrate.contact_angle)):
-        if angle < 180.0:
-            raise SceneError(
-                f"substrate.contact_angle = {angle:g}: not available yet on asperities; 180 is"
-            )
     if parts.asked.space != "bspline":
         raise SceneError(
-            f'discretization.space = "{parts.asked.space}": a contact area needs "bspline"'
+            f'discretization.space = "{parts.asked.space}": a membrane over its whole foot needs '
+            '"bspline"'
         )
     x, y, _ = (float(b) for b in parts.bond)
     tiny = 1e-14 * float(np.abs(parts.bond).max())
@@ -110,12 +125,57 @@ def _on_an_area(parts: Question) -> Foot:
         )
     unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
     length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
-    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, parts.start)
+    least = float(np.min(substrate.contact_angle))
+    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, least, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
         surface = surface.moved(parts.start.points)
-    return Foot(surface, Sector(model), mesh, [parts.law], directions=skin.directions)
+    sector = Sector(model)
+    free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
+    # on a plane every place is as good, and the centroid is held
+    # contact lines lie in the part of the membrane that takes no part in shifts
+    above = 0.0 if least == 180.0 else 2.0 * largest_radius(local)
+    supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
+    foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
+    if least == 180.0:
+        return foot
+    return _through(foot, parts, skin.pressure)
+
+
+def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
+    """The skin passes through the asperities; a penalty under which it sinks into them as deep as
+    a flat membrane at the contact angle tells where to start."""
+    substrate, scale = parts.substrate, parts.scale
+    assert isinstance(substrate, (Sphere, SphereLattice, Spheres))
+    if parts.law.penalty is not None:
+        raise SceneError(
+            'solver.contact = "penalty": only at 180 degrees; leave it out below, contact lines '
+            "need none"
+        )
+    line = TrimmedContactLine(parts.liquid.surface_tension, substrate)
+    angle = np.clip(np.mean(substrate.contact_angle), *PREDICTABLE)
+    r = scale.local_solid(substrate).scale
+    sunk = r * (1.0 + np.cos(np.radians(angle)))
+    law = (pressure + 2.0 / r) / sunk * scale.tension / scale.length**2
+    below = Contact(with_angle(substrate, 180.0), float(law), 1.0)
+    return replace(foot, terms=[line], predictor=[below])
+
+
+def largest_radius(solid: AnySolid) -> float:
+    """Of spheres; 0 for a plane."""
+    return float(np.max(solid.radii if isinstance(solid, Spheres) else getattr(solid, "radius", 0)))
+
+
+PREDICTABLE = 135.0, 175.0
+"""Contact angles, in degrees, for which that start is good."""
+
+
+def with_angle(solid: AnySolid, angle: float) -> AnySolid:
+    """The solid with contact angles of at least ``angle``."""
+    if isinstance(solid, Spheres):
+        return replace(solid, contact_angle=np.maximum(solid.contact_angle, angle))
+    return replace(solid, contact_angle=max(solid.contact_angle, angle))
 
 
 COARSEST = 0.2

@@ -21,6 +21,7 @@ from .asperities import STARTS
 from .cell import asperity_cell
 from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
+from .foot import CONTACT_LINES
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Ramp, Scene
 from .scene_keys import KEYS, check_numbers, table_of
@@ -232,6 +233,7 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
         shape=cell.get("shape", "square"),
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
         discretization=Discretization(**tables["discretization"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
         **_contact(tables["solver"]),
     )
 
@@ -251,6 +253,7 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
         start=_start(tables["solver"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
         **_contact(tables["solver"]),
     )
 
@@ -334,6 +337,8 @@ def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
 
 def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, sheet = tables["liquid"], tables["sheet"]
+    if tables["solver"].get("contact_line") == "trimmed":
+        raise _later('solver.contact_line = "trimmed" on a sheet')
     particles = data.get("particle", [])
     if len(particles) > 1:
         raise _later(f"a sheet with {len(particles)} [[particle]] tables")
@@ -408,7 +413,7 @@ def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
     for key, only in built.items():
         if table.get(key, only) != only:
             raise _later(f'solver.{key} = "{table[key]}"')
-    if table.get("contact_line", "auto") not in ("auto", "conforming"):
+    if table.get("contact_line", "auto") not in CONTACT_LINES:
         raise _later(f'solver.contact_line = "{table["contact_line"]}"')
     for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
         if key in table:

@@ -182,7 +182,7 @@ class Spheres:
         distance, which = self._tree.query(flat)
         which = np.asarray(which)
         smallest, largest = float(radii.min()), float(radii.max())
-        if largest > smallest:
+        if largest > smallest and len(flat):
             which = self._smallest_gap(flat, distance, which, radii)
         which = which.reshape(points.shape[:-1])
         found = nearest_of_balls(points, centers[which], radii[which], which)

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, LineTable, Table
-from ..surface.motion import Spines
+from ..surface.motion import Motion, Spines
 from ..surface.sector import mirrors, sector_elements, sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
@@ -66,6 +66,7 @@ class System:
     constraints : (m,) prescribed integrals minus their values.
     scale : norm of the absolute force contributions, against which a residual is judged.
     matrix : Hessian of the energy minus multipliers times constraints.
+    shifts : how many of the last unknowns are shifts.
     """
 
     gradient: Array
@@ -73,6 +74,7 @@ class System:
     constraints: Array
     scale: float
     matrix: Matrix
+    shifts: int
 
     def residual(self, multipliers: Array) -> Array:
         """(n,) out-of-balance forces."""
@@ -171,12 +173,18 @@ class Assembly:
 
     @property
     def multipliers(self) -> int:
-        """Number of multipliers: of the constraints, then of the edges held on solids."""
-        return len(self._held) + int(self.spines.held.max(initial=-1)) + 1
+        """Number of multipliers: of the constraints, then of the edges held on solids, then of the
+        shifts' gauge."""
+        return len(self._held) + self._gap_count + len(self.spines.shifts)
+
+    @property
+    def _gap_count(self) -> int:
+        return int(self.spines.held.max(initial=-1)) + 1
 
     def line_load(self, multipliers: Array) -> Array:
         """(count,) coefficients of the load with which a curved solid holds its edge."""
-        loads = np.append(multipliers[len(self._held) :], 0.0)
+        first = len(self._held)
+        loads = np.append(multipliers[first : first + self._gap_count], 0.0)
         return loads[self.spines.held[self.spines.second]]
 
     @property
@@ -203,6 +211,15 @@ class Assembly:
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
 
+    def energy(self, surface: Surface) -> float:
+        """Energy of the liquid and its contact, without what ties the control points."""
+        total = self.energies(surface).total
+        return (
+            total
+            if self.trim is None
+            else total - self.tension * self.trim.ties.energy(surface.points)
+        )
+
     def near_contact(self, surface: Surface, displacement: Array) -> float:
         """Largest displacement over the contact length, of control points near the solid."""
         if self.contact is not None:
@@ -213,6 +230,17 @@ class Assembly:
             return 0.0
         moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)
         return float(moved.max(initial=0.0)) / length
+
+    def relaxed(self, surface: Surface, motion: Motion) -> Surface:
+        """The same liquid; what lies inside a solid, and depends on nothing, smoothed."""
+        if self.trim is None:
+            return surface
+        self.trim.hold(surface.points)
+        heights = np.einsum("ki,ki->k", surface.points, motion.directions[: len(surface.points)])
+        level = np.zeros(self.size + 1)
+        level[motion.unknowns[: len(heights)]] = heights
+        step = self.trim.ties.extended(level[:-1]) - level[:-1]
+        return surface.moved(surface.points + motion.displacement(step))
 
     def extended(self, step: Array) -> Array:
         """A step in which unknowns that nothing outside a solid depends on follow the others."""
@@ -298,8 +326,8 @@ class Assembly:
         if self.trim is None:
             return [(rows, at.part(elements)) for elements, rows in self._groups]
         outside = self.trim.outside(points)
-        cut = outside.area
-        return [(self.table.weighted(outside.share), at), (cut, vary.element_points(cut, points))]
+        whole, cut = (self._shifted_table.weighted(outside.share), at), outside.area
+        return [whole, (cut, vary.element_points(cut, points))] if len(cut.functions) else [whole]
 
     def _integrals(
         self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]
@@ -328,25 +356,26 @@ class Assembly:
             np.bincount(
                 self._held_numbers(edge).ravel() + 1,
                 gap.values(edge, points).ravel(),
-                self.multipliers - len(self._held) + 1,
+                self._gap_count + 1,
             )[1:]
             for gap, edge in self._gaps
         ]
-        return interface + body, np.concatenate([np.array(held) - self._targets, *gaps])
+        # every step keeps to the gauge, which is linear
+        gauge = np.zeros(len(self.spines.shifts))
+        missing = np.array(held) - self._targets
+        return interface + body, np.concatenate([missing, *gaps, gauge])
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
         """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
         start = process_time()
         points = surface.points
         at = vary.element_points(self.table, points)
-        if self.trim is not None:
-            self.trim.hold(points)
         _, constraints = self._values(points, at)
         gradient, columns, scale = self._first_order(points, directions, at, multipliers)
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
-        return System(gradient, columns, constraints, size, matrix)
+        return System(gradient, columns, constraints, size, matrix, len(self.spines.shifts))
 
     def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
         """Gradients of the energy (n,) and of the constraints (n, m), without the Hessian."""
@@ -360,6 +389,7 @@ class Assembly:
         """Gradient (n,), gradients of the constraints (n, m), absolute contributions (n,)."""
         gradient, scale = np.zeros(self.size), np.zeros(self.size)
         columns = np.zeros((self.size, self.multipliers))
+        columns[:, self.multipliers - len(self.spines.shifts) :] = self.spines.gauge
         for rows, part in self._parts(points, at):
             work = _along(vary.forces(rows, part, self.tension, self.body), directions, rows)
             gradient += self._gather(work, rows.functions)
@@ -382,10 +412,11 @@ class Assembly:
             gradient += self._gather(work, functions)
             gradient[self.trim.ties.idle], columns[self.trim.ties.idle] = 0.0, 0.0
         if self.contact is not None:
-            push = self.contact.forces(self.contact.touch(points))
-            work = _along(push, directions, self.table)
-            gradient += self._gather(work, self.table.functions)
-            scale += self._gather(np.abs(work), self.table.functions)
+            rows = self._contact_rows
+            push = self.contact.forces(self.contact.touch(points), rows)
+            work = _along(push, directions, rows)
+            gradient += self._gather(work, rows.functions)
+            scale += self._gather(np.abs(work), rows.functions)
         for term, edge in self.lines:
             line = self._edge_rows(edge)
             forces = _again(term.forces(edge, points, term.strength, self.body), line)
@@ -422,9 +453,9 @@ class Assembly:
         if self.trim is not None:
             self._add_trim(matrix, points, directions, body)
         if self.contact is not None:
-            near, blocks = self.contact.hessian(self.contact.touch(points), directions)
-            functions = self.table.functions[near]
-            matrix.add(self.spines.unknowns[functions], blocks)
+            rows = self._contact_rows
+            near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
+            matrix.add(self.spines.unknowns[rows.functions[near]], blocks)
         for term, edge in self.lines:
             self._add_edge(
                 matrix, directions, edge, term.hessian(edge, points, term.strength, body)
@@ -475,8 +506,12 @@ class Assembly:
     def _row_groups(self) -> list[tuple[slice | Index, Table]]:
         """Elements and their tables by rows of the motion; elements at a curved solid have more
         rows than functions."""
-        table, second = self.table, self.spines.second
-        spare = len(self.spines.points) - 1
+        table, second, spare = self.table, self.spines.second, self.spines.spare
+        if len(self.spines.shifts):
+            shifted = (self.spines.share[table.functions] != 0.0).any(axis=1)
+            moving, still = np.flatnonzero(shifted), np.flatnonzero(~shifted)
+            foot = [(still, table.part(still))] if len(still) else []
+            return [*foot, (moving, self._with_shifts(table.part(moving)))]
         more = second[table.functions] < spare
         touching = more.any(axis=1)
         if not touching.any():
@@ -487,12 +522,27 @@ class Assembly:
         rows = edge.with_columns(columns, second[edge.functions[:, columns]])
         return [(rest, table.part(rest)), (near, rows)]
 
+    def _with_shifts(self, table: Table) -> Table:
+        if not len(self.spines.shifts):
+            return table
+        rows = self.spines.spare + 1 + np.arange(len(self.spines.shifts))
+        return table.with_field(self.spines.share, rows.tolist())
+
+    @cached_property
+    def _shifted_table(self) -> Table:
+        return self._with_shifts(self.table)
+
+    @cached_property
+    def _contact_rows(self) -> Table:
+        assert self.contact is not None
+        return self._with_shifts(self.contact.table)
+
     def _edge(self, edge: str) -> EdgeTable:
         return self._space.edge_table(edge, self.points[0], self._ring_elements)
 
     def _edge_rows(self, edge: EdgeTable) -> EdgeTable:
         """An edge's table by rows of the motion."""
-        second, spare = self.spines.second, len(self.spines.points) - 1
+        second, spare = self.spines.second, self.spines.spare
         more = second[edge.functions]
         columns = np.flatnonzero((more < spare).any(axis=0))
         return edge.with_columns(columns, more[:, columns]) if len(columns) else edge
@@ -514,14 +564,16 @@ class Assembly:
             return Matrix(self.size, self._pattern)
         if self._tied is not self.trim.ties.across:
             self._tied = self.trim.ties.across
-            groups = [self.spines.unknowns[f] for f in (self.table.functions, self._tied[0])]
-            self._pattern = SparsePattern(self.size, groups)
+            tables = self._shifted_table.functions, self._tied[0]
+            groups = [self.spines.unknowns[functions] for functions in tables]
+            self._pattern = SparsePattern(self.size - len(self.spines.shifts), groups)
         return Matrix(self.size, self._pattern)
 
     @cached_property
     def _pattern(self) -> SparsePattern:
         return SparsePattern(
-            self.size, [self.spines.unknowns[rows.functions] for _, rows in self._groups]
+            self.size - len(self.spines.shifts),
+            [self.spines.unknowns[rows.functions] for _, rows in self._groups],
         )
 
 

@@ -117,16 +117,21 @@ class ContactSet:
         square = touch.traction**2 - self.multipliers**2
         return float(0.5 * (self.delta * square * self.area).sum())
 
-    def forces(self, touch: Touch) -> Array:
-        """(elements, local, 3) derivative of the energy by local control points."""
+    def forces(self, touch: Touch, table: Table | None = None) -> Array:
+        """(elements, local, 3) derivative of the energy by the local control points, or by the
+        local functions of another table at the contact points."""
+        table = self.table if table is None else table
         push = -(touch.traction * self.area)[..., None] * touch.at.normal
-        return np.asarray(self.table.values.transpose(0, 2, 1) @ push)
+        return np.asarray(table.values.transpose(0, 2, 1) @ push)
 
-    def hessian(self, touch: Touch, directions: Array) -> tuple[Index, Array]:
-        """Elements in contact and the second derivative along directions (control points, 3)."""
+    def hessian(
+        self, touch: Touch, directions: Array, table: Table | None = None
+    ) -> tuple[Index, Array]:
+        """Elements in contact and the second derivative along directions of the table's rows."""
+        table = self.table if table is None else table
         near = np.flatnonzero((touch.traction > 0).any(axis=1))
-        rows, at = self.table.values[near], touch.at
-        d = directions[self.table.functions[near]]
+        rows, at = table.values[near], touch.at
+        d = directions[table.functions[near]]
         bent = self.area[near] * touch.traction[near] * at.bend[near]
         soft = np.broadcast_to(self.delta, self.area.shape)[near]
         stiff = self.area[near] * (touch.traction[near] > 0) / soft

@@ -7,6 +7,7 @@ eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,8 @@ class SparsePattern:
     Parameters
     ----------
     size : number of unknowns.
-    groups : arrays (elements, local) of the unknown of each local function, -1 where fixed.
+    groups : arrays (elements, local) of the unknown of each local function, -1 where fixed;
+        unknowns from ``size`` on are left out.
     """
 
     def __init__(self, size: int, groups: Sequence[Index]) -> None:
@@ -61,7 +63,8 @@ class SparsePattern:
 
 def _keys(size: int, unknowns: Index) -> Index:
     columns, rows = unknowns[:, :, None], unknowns[:, None, :]
-    return np.where((columns >= 0) & (rows >= 0), columns * size + rows, size * size).ravel()
+    inside = (columns >= 0) & (rows >= 0) & (columns < size) & (rows < size)
+    return np.where(inside, columns * size + rows, size * size).ravel()
 
 
 class Matrix:
@@ -70,44 +73,60 @@ class Matrix:
     Parameters
     ----------
     size : number of unknowns.
-    pattern : None for dense storage.
+    pattern : of the first ``pattern.size`` unknowns, the rest couple with all of them; None for
+        dense storage.
+
+    Attributes
+    ----------
+    full : (n, k) columns of the unknowns that are not in the pattern.
     """
 
     def __init__(self, size: int, pattern: SparsePattern | None = None) -> None:
         self.size = size
         self.pattern = pattern
         self.data = np.zeros(size * size if pattern is None else len(pattern.entries))
+        self.full = np.zeros((size, 0 if pattern is None else size - pattern.size))
 
     def add(self, unknowns: Index, blocks: Array) -> None:
-        """Add element blocks (elements, local, local)."""
+        """Add symmetric element blocks (elements, local, local)."""
         inside = self.pattern
         slots = _keys(self.size, unknowns) if inside is None else inside.slots(unknowns)
         self.data += np.bincount(slots, blocks.ravel(), len(self.data) + 1)[:-1]
+        for k, column in enumerate(self.full.T):
+            elements, local = np.nonzero(unknowns == self.size - len(self.full.T) + k)
+            rows = unknowns[elements]
+            column += np.bincount(
+                rows.ravel() + 1, blocks[elements, :, local].ravel(), self.size + 1
+            )[1:]
 
     def diagonal(self) -> Array:
         """(n,)"""
-        where = slice(None, None, self.size + 1) if self.pattern is None else self.pattern.diagonal
-        return np.asarray(self.data[where])
+        if self.pattern is None:
+            return np.asarray(self.data[:: self.size + 1])
+        return np.append(self.data[self.pattern.diagonal], np.diag(self.full[self.pattern.size :]))
 
     def dense(self) -> Array:
         """(n, n)"""
         if self.pattern is None:
             return self.data.reshape(self.size, self.size)
-        return np.asarray(self.sparse().toarray())
+        below = self.full[: self.pattern.size].T
+        return np.hstack([np.vstack([self.sparse().toarray(), below]), self.full])
 
     def sparse(self, shift: Array | None = None) -> Any:
-        """``scipy.sparse.csc_array``, with a shift added to the diagonal."""
+        """The part with a pattern as ``scipy.sparse.csc_array``, a shift added to the diagonal."""
         pattern = self.pattern
         assert pattern is not None
         data = self.data if shift is None else self.data.copy()
         if shift is not None:
             data[pattern.diagonal] += shift
-        return csc_array((data, pattern.rows, pattern.starts), (self.size, self.size))
+        return csc_array((data, pattern.rows, pattern.starts), (pattern.size, pattern.size))
 
     def __matmul__(self, vector: Array) -> Array:
         if self.pattern is None:
             return np.asarray(self.dense() @ vector)
-        return np.asarray(self.sparse() @ vector)
+        first = self.pattern.size
+        near = self.sparse() @ vector[:first]
+        return np.append(near, self.full[:first].T @ vector[:first]) + self.full @ vector[first:]
 
 
 class Bordered:
@@ -145,6 +164,39 @@ class Bordered:
             raise SingularMatrix(f"the linear solve leaves a relative defect of {miss / size:.1e}")
         return s, q
 
+    def stiffened(self, block: Array) -> Bordered:
+        """The same with a matrix (k, k) added to the last unknowns."""
+        k = len(block)
+        if self._matrix.pattern is None:
+            return Bordered(self._plus(block), self._border, self._shift)
+        other = copy(self)
+        other._matrix = self._plus(block)
+        other._schur = self._schur.copy()
+        other._schur[:k, :k] += block
+        other._count()
+        return other
+
+    def _plus(self, block: Array) -> Matrix:
+        plus = copy(self._matrix)
+        plus.data, plus.full = plus.data.copy(), plus.full.copy()
+        k = len(block)
+        if plus.pattern is None:
+            plus.dense()[-k:, -k:] += block
+        else:
+            plus.full[-k:] += block
+        return plus
+
+    def _count(self) -> None:
+        negative = int((np.linalg.eigvalsh(self._schur) < 0).sum()) if self._schur.size else 0
+        self.index = self._inner + negative - self._m
+
+    def last(self, count: int) -> Array:
+        """(count, count) Hessian of the last unknowns when all the others follow them."""
+        unit = np.eye(self._n)[:, self._n - count :]
+        zero = np.zeros(self._m)
+        follow = [self.solve(column, zero)[0][self._n - count :] for column in unit.T]
+        return np.linalg.inv(0.5 * (np.array(follow) + np.array(follow).T))
+
     def _defect(self, s: Array, q: Array, top: Array, bottom: Array) -> tuple[Array, Array]:
         r = top - self._matrix @ s - self._border @ q
         if self._shift is not None:
@@ -168,9 +220,12 @@ class Bordered:
         self.index = _negative_pivots(self._ldl, self._pivots) - m
 
     def _factor_sparse(self, shift: Array | None) -> None:
+        pattern, full, n = self._matrix.pattern, self._matrix.full, self._n
+        assert pattern is not None
+        first = self._first = pattern.size
         try:
             self._lu = splu(
-                self._matrix.sparse(shift),
+                self._matrix.sparse(None if shift is None else shift[:first]),
                 permc_spec="MMD_AT_PLUS_A",
                 diag_pivot_thresh=0.0,
                 options={"SymmetricMode": True},
@@ -180,22 +235,31 @@ class Bordered:
         if not np.array_equal(self._lu.perm_r, self._lu.perm_c):
             raise SingularMatrix("a pivot vanished, so the inertia is not known")
         # Without row exchanges U = D L^T, so the signs of its diagonal are the inertia of K;
-        # the Schur complement of the border adds its own (Sylvester, Haynsworth).
-        negative = int((self._lu.U.diagonal() < 0).sum())
-        self._border_solved = self._lu.solve(self._border) if self._m else self._border
-        self._schur = -self._border.T @ self._border_solved
-        negative += int((np.linalg.eigvalsh(self._schur) < 0).sum()) if self._m else 0
-        self.index = negative - self._m
+        # the Schur complement of the border and of the full columns adds its own (Sylvester,
+        # Haynsworth).
+        self._inner = int((self._lu.U.diagonal() < 0).sum())
+        self._outer = np.hstack([full[:first], self._border[:first]])
+        corner = np.zeros(2 * (self._outer.shape[1],))
+        corner[: n - first, : n - first] = full[first:]
+        if shift is not None:
+            corner[: n - first, : n - first] += np.diag(shift[first:])
+        corner[: n - first, n - first :] = self._border[first:]
+        corner[n - first :, : n - first] = self._border[first:].T
+        self._outer_solved = self._lu.solve(self._outer) if corner.size else self._outer
+        self._schur = corner - self._outer.T @ self._outer_solved
+        self._count()
 
     def _solve_once(self, top: Array, bottom: Array) -> tuple[Array, Array]:
         if self._matrix.pattern is None:
             both = dsytrs(self._ldl, self._pivots, np.append(top, bottom), lower=1)[0].ravel()
             return both[: self._n], both[self._n :]
-        s = self._lu.solve(top)
-        if not self._m:
+        s = self._lu.solve(top[: self._first])
+        if not self._schur.size:
             return s, bottom
-        q = np.linalg.solve(self._schur, bottom - self._border.T @ s)
-        return s - self._border_solved @ q, q
+        rest = np.append(top[self._first :], bottom) - self._outer.T @ s
+        q = np.linalg.solve(self._schur, rest)
+        last = self._n - self._first
+        return np.append(s - self._outer_solved @ q, q[:last]), q[last:]
 
 
 def _negative_pivots(ldl: Array, pivots: Index) -> int:

@@ -65,7 +65,7 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
     e_surf = copies * (tension * area + wetting) * scale.energy
     lift = _world_weight(scene, assembly, surface)
     return {
-        "energy": copies * assembly.energies(surface).total * scale.energy + lift,
+        "energy": copies * assembly.energy(surface) * scale.energy + lift,
         "E_surf": e_surf,
         "E_grav": copies * weight * scale.energy + lift,
         "A_LG": copies * area * scale.length**2,

@@ -33,7 +33,13 @@ ROUNDS = 30
 """Updates of the multipliers of contact at most."""
 CRAWL, PATIENCE = 0.02, 5
 """Part of a step, and how often in a row no more of it may be taken, with contact: a membrane that
-has been carried too far sideways folds, and a new start is better."""
+has been carried too far sideways folds."""
+LAG, ROLLS = 1.0, 30
+"""Way over the contact length that a droplet's top may roll ahead of its foot before the start
+begins anew there, and how often it does."""
+ROLL, HELD = 0.5, 0.01
+"""Way over the contact length that a droplet may roll in one step: once its foot has taken a full
+step, and before; less while it rolls to and fro."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -146,12 +152,16 @@ def _iterate(
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
     flee, approached = False, None
-    left, rounds, crawling = options.max_iterations, 0, 0
+    left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
+    steady, reach = False, ROLL
+    way: Array = np.zeros(3)
+    roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
         motion = assembly.spines.on(result.surface)
+        result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
         if not np.isfinite(residual):
@@ -160,7 +170,10 @@ def _iterate(
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
         before = process_time()
-        direction = _direction(system, plain=residual <= options.near and not flee)
+        farthest = np.inf
+        if assembly.contact is not None:
+            farthest = (reach if steady else HELD) * assembly.contact.length
+        direction = _direction(system, farthest, plain=residual <= options.near and not flee)
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
@@ -185,7 +198,16 @@ def _iterate(
                 f"no step along the Newton direction lowers the energy (relative residual "
                 f"{residual:.1e})",
             )
-        result.surface = moved
+        result.surface, steady = moved, taken == 1.0
+        last, roll = roll, direction.step[assembly.size - len(roll) :]
+        reach = max(0.5 * reach, HELD) if roll @ last < 0.0 else min(1.5 * reach, ROLL)
+        if assembly.contact is not None:
+            lag = assembly.spines.lag(moved)
+            ahead = np.linalg.norm(lag) > LAG * assembly.contact.length
+            # one that rolls back is near its place
+            if ahead and assembly.rounds == 0 and rolled < ROLLS and lag @ way >= 0.0:
+                result.surface, steady = assembly.spines.anew(moved), False
+                left, rolled, way = options.max_iterations, rolled + 1, lag
         result.multipliers = result.multipliers + taken * (
             direction.multipliers - result.multipliers
         )
@@ -222,7 +244,7 @@ class _Direction:
     index: int
 
 
-def _direction(system: System, *, plain: bool) -> _Direction:
+def _direction(system: System, farthest: float, *, plain: bool) -> _Direction:
     """Newton step; the diagonal is shifted until the Hessian is positive where it must be.
 
     ``plain`` leaves the shift out: the step then leads to the nearest equilibrium, stable or not.
@@ -232,11 +254,26 @@ def _direction(system: System, *, plain: bool) -> _Direction:
     diagonal = np.maximum(diagonal, 1e-6 * diagonal.max(initial=0.0))
     factor = Bordered(system.matrix, border)
     index, shift = factor.index, 0.0
+    rolls = bool(system.shifts) and not plain
+    factor = _with_a_bowl(system, factor, farthest) if rolls else factor
     while factor.index > 0 and not plain and shift < 1e8:
         shift = max(8.0 * shift, 1e-3)  # never 1: a negative pivot would vanish
         factor = Bordered(system.matrix, border, shift * diagonal)
+        factor = _with_a_bowl(system, factor, farthest) if rolls else factor
     step, multipliers = factor.solve(-system.gradient, -system.constraints)
     return _Direction(step, -multipliers, shift, index)
+
+
+def _with_a_bowl(system: System, factor: Bordered, farthest: float) -> Bordered:
+    """Add the curvature of a bowl to the shifts: where they lower the energy like a ball on a hill
+    the step leads as far as up a bowl of the same curvature, and nowhere farther than allowed."""
+    step, _ = factor.solve(-system.gradient, -system.constraints)
+    curvature, axes = np.linalg.eigh(factor.last(system.shifts))
+    pull = -curvature * (axes.T @ step[-system.shifts :])
+    bowl = 2.0 * max(0.0, -curvature[0])
+    while np.linalg.norm(pull / (curvature + bowl)) > farthest:
+        bowl = 1.5 * bowl + 1e-3 * np.abs(curvature).max()
+    return factor.stiffened(bowl * np.eye(system.shifts)) if bowl else factor
 
 
 def _search(

@@ -10,18 +10,17 @@ from typing import Literal
 
 import numpy as np
 
-from ..arrays import Array
 from ..checks import choice, record
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
-from ..surface.surface import Surface
-from ..terms import BodyDensity
+from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
 from .load_stepping import LoadPath, LoadStep, load_stepping
 from .newton import NEAR, NewtonOptions, NewtonResult, newton
 from .options import ON_FAIL, SolverOptions
+from .predictor import first
 from .solution import Solution
 from .state import journal_of, start_surface
 from .status import Status
@@ -69,7 +68,7 @@ def solve(
         return _delivered(replace(solution, scene=scene), on_fail)
     halfway = options.start is not None and _halfway(scene, options)
     if options.start is not None and not halfway:
-        scene = replace(scene, surface=start_surface(options.start, scene))
+        scene = replace(scene, surface=start_surface(options.start, scene), predictor=None)
     try:
         assembly = Assembly(scene, options.quadrature)
     except MemoryError as error:
@@ -80,7 +79,7 @@ def solve(
         options.max_iterations,
         options.tolerance,
         # a droplet on asperities may roll to a place where it is stable
-        near=0.0 if assembly.contact is not None else NEAR,
+        near=0.0 if _rolls(scene) else NEAR,
         deadline=started + options.max_cpu_s,
     )
     if halfway:
@@ -121,49 +120,11 @@ def _stepped(
     )
 
 
-CENTRED = 0.02
-"""Way that a droplet may have rolled on its mesh: farther, its horizontal balance suffers."""
-DRIFTS = 20
-"""New starts at most for a droplet that rolls to a place where it is stable."""
-
-
-def _follow_drift(
-    scene: Scene,
-    assembly: Assembly,
-    start: Surface,
-    result: NewtonResult,
-    settings: NewtonOptions,
-) -> NewtonResult:
-    """A droplet on asperities without mirror planes rolls sideways, which its given directions
-    follow only so far: start anew where it has rolled to."""
-    moved = np.zeros(3)
-    for _ in range(DRIFTS):
-        if result.status is Status.INTERRUPTED or "xy" in scene.sector.mirrored:
-            break
-        place = _centroid(scene, assembly, result.surface)
-        drift = place - _centroid(scene, assembly, start.moved(start.points + moved))
-        if result.status is None and np.linalg.norm(drift) <= CENTRED:
-            break
-        log.info("the droplet has rolled by %.3g, %.3g: new start", drift[0], drift[1])
-        moved = moved + drift
-        iterations, seconds = result.iterations, result.linear_seconds
-        assert assembly.contact is not None
-        assembly.contact.multipliers[:] = 0.0
-        result = newton(assembly, start.moved(start.points + moved), None, None, settings)
-        result.iterations = iterations + result.iterations
-        result.linear_seconds += seconds
-    return result
-
-
-def _centroid(scene: Scene, assembly: Assembly, surface: Surface) -> Array:
-    """(3,) of the liquid, along the axes that its model leaves free; height left out."""
-    inside = assembly.body_integral(surface, BodyDensity(1.0))
-    place = np.zeros(3)
-    for k, axis in enumerate("xy"):
-        if axis not in scene.sector.mirrored:
-            along = BodyDensity(0.0, tuple(float(k == i) for i in range(3)))  # type: ignore[arg-type]
-            place[k] = assembly.body_integral(surface, along) / inside
-    return place
+def _rolls(scene: Scene) -> bool:
+    """Whether the membrane lies on solids or passes through several of them."""
+    through = any(isinstance(t, TrimmedContactLine) for t in scene.terms)
+    lies = any(isinstance(t, Contact) for t in scene.terms)
+    return lies or (through and scene.kind == "sessile_droplet")
 
 
 def _delivered(solution: Solution, on_fail: str) -> Solution:
@@ -206,10 +167,11 @@ def _iterate(
 
         found, state = tangent_edge(scene.free_edge, assembly, settings, find)
         return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
+    if scene.ramp is not None and scene.ramp.only:
+        path = _stepped(scene, assembly, settings, options, report)
+        return Outcome(path.scene, path.result, path.steps, path.bracket, path.progress)
     start, grading = scene.local_surface(), scene.meridian_grading
-    direct = newton(assembly, start, None, grading, settings)
-    if assembly.contact is not None and scene.kind == "sessile_droplet":
-        direct = _follow_drift(scene, assembly, start, direct, settings)
+    direct = first(scene, assembly, settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
     if direct.status is Status.INTERRUPTED or (direct.status is None and direct.index <= 0):
         return Outcome(scene, direct, steps)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -48,6 +49,17 @@ class Table:
         )
         functions = np.hstack([self.functions, functions])
         return Table(functions, values, d1, d2, self.weights, self.parameters)
+
+    def with_field(self, coefficients: Array, functions: Sequence[int]) -> Table:
+        """A field (count,) of the space as one more local function under each of some numbers."""
+        own = coefficients[self.functions][..., None]
+        values, d1, d2 = (
+            np.concatenate([rows, np.repeat(rows @ own, len(functions), axis=-1)], axis=-1)
+            for rows in (self.values, self.d1, self.d2)
+        )
+        numbers = np.broadcast_to(functions, (len(self.functions), len(functions)))
+        functions_ = np.hstack([self.functions, numbers])
+        return Table(functions_, values, d1, d2, self.weights, self.parameters)
 
     def derivatives(self, coefficients: Array) -> tuple[Array, Array, Array]:
         """A field and its two parametric derivatives: three arrays (elements, points, c)."""

@@ -19,14 +19,14 @@ from ..errors import GeometryError
 from ..splines import Space, net_of
 from ..splines.space import EDGES
 from .sector import check_symmetric, sector_images
-from .supports import Fixed, Joint, Sector, Sliding, Support, Symmetry
+from .supports import Fixed, Joint, Sector, Shift, Sliding, Support, Symmetry
 from .surface import Surface
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
     """Linear map from unknowns to displacements of control points: rows (point, direction,
-    unknown).
+    unknown), and shifts in which many points take part.
 
     Attributes
     ----------
@@ -34,20 +34,25 @@ class Motion:
     directions : (rows, 3) its displacement per unit of the unknown.
     unknowns : (rows,) number of the unknown, -1 where there is none.
     size : number of unknowns.
+    shifts : (k, 3) displacement per unit of each of the last k unknowns; their rows come last.
+    share : (count,) part in the shifts that each control point takes.
     """
 
     points: Index
     directions: Array
     unknowns: Index
     size: int
+    shifts: Array
+    share: Array
 
     def displacement(self, step: Array) -> Array:
         """(count, 3) displacements for unknowns (size,)."""
         padded = np.append(step, 0.0)
-        moves = padded[self.unknowns][:, None] * self.directions
-        total = np.zeros((self.points.max() + 1, 3))
-        np.add.at(total, self.points, moves)
-        return total
+        own = len(self.points) - len(self.shifts)
+        moves = padded[self.unknowns[:own]][:, None] * self.directions[:own]
+        total = self.share[:, None] * (step[self.size - len(self.shifts) :] @ self.shifts)
+        np.add.at(total, self.points[:own], moves)
+        return np.asarray(total)
 
 
 class Spines:
@@ -66,7 +71,8 @@ class Spines:
 
     Attributes
     ----------
-    points, unknowns, size : as in :class:`Motion`; the last row is a spare without an unknown.
+    points, unknowns, size, shifts, share : as in :class:`Motion`.
+    spare : number of a row without an unknown.
     second : (count,) the second row of each control point, or the spare row.
     held : (rows,) number of the gap constraint that belongs to a second row, else -1.
     """
@@ -79,6 +85,7 @@ class Spines:
     ) -> None:
         space = surface.space
         self._given = directions
+        self._start = surface.points
         self.space = space
         self._sliding = [s for s in supports if isinstance(s, Sliding)]
         self._mirrors: list[tuple[Index, int]] = []
@@ -104,11 +111,20 @@ class Spines:
         numbers = _numbered(owner, fixed[owner])
         seconds = _numbered(owner[edge], np.zeros(len(edge), bool))
         primary = int(numbers.max(initial=-1)) + 1
-        self.size = primary + int(seconds.max(initial=-1)) + 1
-        spare = space.count + len(edge)
-        self.points: Index = np.concatenate([np.arange(space.count), edge, [0]])
-        self.unknowns: Index = np.concatenate([numbers, primary + seconds, [-1]])
-        self.held: Index = np.concatenate([np.full(space.count, -1), seconds, [-1]])
+        own = primary + int(seconds.max(initial=-1)) + 1
+        self.spare = spare = space.count + len(edge)
+        shift = next((s for s in supports if isinstance(s, Shift)), None)
+        axes = "" if shift is None else shift.axes
+        self.shifts: Array = np.eye(3)[["xyz".index(axis) for axis in axes]]
+        self.share: Array = np.zeros(space.count)
+        if shift is not None:
+            height = np.maximum(surface.points[:, 2] - shift.above, 0.0)
+            self.share = height / height.max()
+        last: Index = np.arange(len(axes))
+        self.size = own + len(axes)
+        self.points: Index = np.concatenate([np.arange(space.count), edge, [0], 0 * last])
+        self.unknowns: Index = np.concatenate([numbers, primary + seconds, [-1], own + last])
+        self.held: Index = np.concatenate([np.full(space.count, -1), seconds, [-1], -1 - 0 * last])
         self.second: Index = np.full(space.count, spare)
         self.second[edge] = space.count + np.arange(len(edge))
         self._seams = [
@@ -124,8 +140,8 @@ class Spines:
         smooth field over the patch; a jump in it would cost orders of magnitude.
         """
         if self._given is not None:
-            rows = np.concatenate([self._given, np.zeros((1, 3))])
-            return Motion(self.points, rows, self.unknowns, self.size)
+            rows = np.concatenate([self._given, np.zeros((1, 3)), self.shifts])
+            return self._motion(rows)
         space = surface.space
         normals = self._normals(surface)
         for support in self._sliding:
@@ -153,7 +169,38 @@ class Spines:
             if support.solid is not None
         ]
         rows = np.concatenate([directions, *normals_of_solids, np.zeros((1, 3))])
-        return Motion(self.points, rows, self.unknowns, self.size)
+        return self._motion(rows)
+
+    def _motion(self, rows: Array) -> Motion:
+        return Motion(self.points, rows, self.unknowns, self.size, self.shifts, self.share)
+
+    def lag(self, surface: Surface) -> Array:
+        """(3,) way by which the top, which takes part in shifts, is ahead of the foot."""
+        if not len(self.shifts):
+            return np.zeros(3)
+        return self._way(surface, int(self.share.argmax())) - self._way(
+            surface, int(self.share.argmin())
+        )
+
+    def anew(self, surface: Surface) -> Surface:
+        """The start, as far away as the top of a surface has been shifted."""
+        return surface.moved(self._start + self._way(surface, int(self.share.argmax())))
+
+    def _way(self, surface: Surface, point: int) -> Array:
+        """(3,) way of a control point along the shifts."""
+        moved = surface.points[point] - self._start[point]
+        return np.asarray(moved @ self.shifts.T @ self.shifts)
+
+    @cached_property
+    def gauge(self) -> Array:
+        """(n, k) columns of what the steps of the control points may not change: the mean place of
+        those that take part in a shift, which is the shift's own."""
+        columns = np.zeros((self.size + 1, len(self.shifts)))
+        if len(self.shifts):
+            assert self._given is not None
+            along = self.share[:, None] * (self._given @ self.shifts.T)
+            np.add.at(columns, self.unknowns[: self.space.count], along)
+        return columns[:-1]
 
     @cached_property
     def _derivative_matrices(self) -> tuple[Array, Array, Array, Array]:

@@ -70,6 +70,9 @@ def state(scene, seed=0):
     assert not (touch.traction > 0).all()
     multipliers = rng.uniform(0.5, 2.0, assembly.multipliers)
     direction = rng.standard_normal(assembly.size)
+    # steps of the control points keep to the gauge of the shifts
+    gauge = assembly.spines.gauge
+    direction -= gauge @ np.linalg.lstsq(gauge, direction)[0]
     largest = np.linalg.norm(motion.displacement(direction), axis=1).max()
     direction *= min(0.3, 0.9 * 2**8 * reach) / largest
     return assembly, surface, multipliers, direction, motion
