@@ -8,7 +8,6 @@ import os
 import queue
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -105,7 +104,7 @@ class _Lane:
         method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else None
         context = multiprocessing.get_context(method)
         with _one_thread():
-            self._pool = ProcessPoolExecutor(1, context, _prepare, (os.getpid(),))
+            self._pool = ProcessPoolExecutor(1, context, _prepare)
             try:
                 self._pid = self._pool.submit(os.getpid).result(STARTING)
             except (BrokenProcessPool, TimeoutError) as error:
@@ -135,23 +134,14 @@ def _one_thread() -> Iterator[None]:
                 del os.environ[name]
 
 
-def _prepare(parent: int) -> None:
+def _prepare() -> None:
     """In a worker: ignore Ctrl-C, and end when the parent is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
 
     def watch() -> None:
-        while _alive(parent):
-            time.sleep(1.0)
+        parent.join()
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True

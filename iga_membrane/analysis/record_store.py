@@ -102,10 +102,17 @@ def _abandoned(path: Path) -> bool:
     """Whether a claim was made on this host by a process that is gone."""
     try:
         host, _, pid = path.read_text(encoding="utf-8").partition(" ")
-        if host == socket.gethostname():
-            os.kill(int(pid), 0)
+        return host == socket.gethostname() and _gone(int(pid))
+    except FileNotFoundError:
+        return False
+
+
+def _gone(pid: int) -> bool:
+    """Whether a process has ended, also if its parent has not taken notice yet."""
+    try:
+        os.kill(pid, 0)
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
     except ProcessLookupError:
         return True
-    except (FileNotFoundError, PermissionError):
-        return False
-    return False
+    except OSError:
+        return False  # another user's, or a system without /proc
