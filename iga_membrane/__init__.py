@@ -11,7 +11,8 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "errors": ("GeometryError", "OutputError", "SceneError", "SolveError"),
+    "errors": ("GeometryError", "OutputError", "SceneError", "SolveError", "StateError"),
+    "units": ("si",),
     "splines": ("Grading", "Space", "Table", "bspline_basis", "close_pole", "lagrange_basis",
                 "line_basis", "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
     "surface.surface": ("Surface",),
@@ -38,10 +39,12 @@ _HOME = {
     "solver.status": ("Status",),
     "solver.solution": ("Solution",),
     "solver.solve": ("solve",),
+    "solver.state": ("load",),
     "solver.trace": ("Path", "trace"),
     "solver.contact_line": ("contact_line",),
     "analysis.convergence": ("Study", "convergence_study"),
     "analysis.critical": ("Crossing", "critical_value"),
+    "analysis.sweep": ("Sweep", "sweep"),
     "view.picture": ("plot",),
     "view.export": ("save",),
 }  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any
@@ -90,6 +90,41 @@ def choice(field: str, value: Any, allowed: Iterable[str]) -> str:
 def contact_angle(field: str, value: Any) -> float:
     """Degrees through the liquid, 0 < angle <= 180."""
     return number(field, value, above=0.0, most=180.0, unit="degrees, through the liquid")
+
+
+def record(field: str, value: Any, *kinds: type) -> None:
+    """An object of one of some classes."""
+    if not isinstance(value, kinds):
+        names = " or ".join(kind.__name__ for kind in kinds)
+        raise SceneError(f"{field} = {value!r}: must be a {names}, got {type(value).__name__}")
+
+
+def flag(field: str, value: Any) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise SceneError(f"{field} = {value!r}: must be true or false")
+    return value
+
+
+LONGEST_PATH = 10_000
+"""Values of a path at most."""
+
+
+def path_values(field: str, values: Any) -> tuple[float, ...]:
+    """Two or more finite numbers, each different from the one before; a path may turn back."""
+    if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
+        raise SceneError(f"{field} = {values!r}: a list of two or more numbers is needed")
+    given = list(values)
+    if not 2 <= len(given) <= LONGEST_PATH:
+        shown = given if len(given) < 2 else f"{len(given)} numbers"
+        raise SceneError(
+            f"{field} = {shown}: a path needs two or more values, at most {LONGEST_PATH}"
+        )
+    checked = tuple(number(f"{field}[{i}]", value) for i, value in enumerate(given))
+    for i in range(1, len(checked)):
+        if checked[i] == checked[i - 1]:
+            raise SceneError(f"{field}[{i}] = {checked[i]!r}: the same as the value before it")
+    return checked
 
 
 def suggestion(word: Any, allowed: Iterable[str]) -> str:

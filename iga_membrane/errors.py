@@ -21,6 +21,10 @@ class OutputError(OSError):
     """A result cannot be written where it was asked for."""
 
 
+class StateError(ValueError):
+    """A state file cannot be trusted: corrupt, cut off, foreign, newer, or of another scene."""
+
+
 class SolveError(RuntimeError):
     """A solve that did not end in ``CONVERGED_STABLE``.
 

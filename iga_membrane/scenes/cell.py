@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number
+from ..checks import choice, number, record
 from ..errors import SceneError
 from ..solids import Sphere
 from ..surface.closed import Stretch
@@ -23,7 +23,7 @@ from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
 from .foot import adhesion
-from .liquid import MODELS, Discretization, Liquid, Mesh
+from .liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
 from .scene import Ramp, Scene
 from .start import gathered
 
@@ -66,7 +66,8 @@ def asperity_cell(
     SceneError
         A value out of its range; a sphere that does not fit into the cell.
     """
-    liquid = liquid or Liquid()
+    liquid, asked = with_defaults(liquid, discretization)
+    record("sphere", sphere, Sphere)
     choice("cell.shape", shape, SHAPES)
     choice("solver.contact_line", contact_line, ("auto", "trimmed", "adhesion"))
     size = number("cell.size", size, above=0.0)
@@ -79,7 +80,6 @@ def asperity_cell(
             f"{2.0 * (reach + r):g}"
         )
     along = size / r * (1.0 if shape == "square" else 0.5)
-    asked = discretization or Discretization()
     mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * along)))
     smallest = smallest_model(sphere, size, (0.0, 0.0))
     model = mesh.model or smallest

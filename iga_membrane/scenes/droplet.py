@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number, vector
+from ..checks import choice, number, record, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.supports import Sector
@@ -33,7 +33,7 @@ from .foot import (
     with_angle,
     with_rim,
 )
-from .liquid import Discretization, Liquid
+from .liquid import Discretization, Liquid, with_defaults
 from .scene import FreeEdge, Ramp, Scene
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
@@ -87,7 +87,8 @@ def sessile_droplet(
         A value out of its range; a model with a mirror plane that gravity or the substrate does not
         have; a start below the substrate.
     """
-    liquid = liquid or Liquid()
+    liquid, asked = with_defaults(liquid, discretization)
+    record("substrate", substrate, Plane, Sphere, SphereLattice, Spheres)
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
@@ -103,7 +104,6 @@ def sessile_droplet(
             f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "
             "length leaves the range of floating point numbers; choose other units"
         )
-    asked = discretization or Discretization()
     terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)

@@ -13,7 +13,7 @@ from ..errors import SceneError
 from ..surface.ring import axisymmetric, ring_space
 from ..surface.supports import Fixed, Sector
 from ..terms import Pressure, Scale, SurfaceTension, Term, Volume
-from .liquid import Discretization, Liquid, Mesh
+from .liquid import Discretization, Liquid, Mesh, with_defaults
 from .scene import Ramp, Scene
 
 SLENDER = 0.4
@@ -43,8 +43,8 @@ def film_between_rings(
     SceneError
         A value out of its range, or both volume and pressure.
     """
-    liquid = liquid or Liquid()
-    mesh = (discretization or Discretization()).mesh()
+    liquid, asked = with_defaults(liquid, discretization)
+    mesh = asked.mesh()
     radius = number("rings.radius", radius, above=0.0)
     half_height = number("rings.half_height", half_height, above=0.0)
     if volume is not None and pressure is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from ..checks import choice, integer, number
+from ..checks import choice, integer, number, record
 from ..errors import SceneError
 
 Model = Literal["full", "half", "quarter", "eighth"]
@@ -29,6 +29,26 @@ class Liquid:
         tension = number("liquid.surface_tension", self.surface_tension, above=0.0)
         object.__setattr__(self, "surface_tension", tension)
         object.__setattr__(self, "density", number("liquid.density", self.density, least=0.0))
+
+    @classmethod
+    def water(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 72.8 mN/m, 998 kg/m^3."""
+        return cls(72.8e-3, 998.0)
+
+    @classmethod
+    def glycerol(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 63 mN/m, 1261 kg/m^3."""
+        return cls(63e-3, 1261.0)
+
+    @classmethod
+    def ethanol(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 22.3 mN/m, 789 kg/m^3."""
+        return cls(22.3e-3, 789.0)
+
+    @classmethod
+    def mercury(cls) -> Liquid:
+        """At 20 degrees Celsius in SI: 485 mN/m, 13546 kg/m^3."""
+        return cls(485e-3, 13546.0)
 
 
 @dataclass(frozen=True)
@@ -65,6 +85,22 @@ class Discretization:
     def mesh(self, *, degree: int = 4, elements: int = 20) -> Mesh:
         """The choices, with a scene's own where there are none."""
         return Mesh(self.space, self.degree or degree, self.elements or elements, self.model)
+
+
+def with_defaults(
+    liquid: Liquid | None, discretization: Discretization | None
+) -> tuple[Liquid, Discretization]:
+    """What a scene was given, or the defaults.
+
+    Raises
+    ------
+    SceneError
+        If they are not what they should be.
+    """
+    given = liquid or Liquid(), discretization or Discretization()
+    record("liquid", given[0], Liquid)
+    record("discretization", given[1], Discretization)
+    return given
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import choice, number, vector
+from ..checks import choice, number, path_values, record, vector
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from .asperities import STARTS
@@ -43,7 +43,7 @@ class SceneFile:
     Attributes
     ----------
     scene : what to solve.
-    solver : the solver's limits that the file sets, by the names of ``SolverOptions``.
+    solver : the solver's limits and start that the file sets, by the names of ``SolverOptions``.
     """
 
     scene: Scene
@@ -58,6 +58,18 @@ def load_scene(path: str | Path) -> SceneFile:
     SceneError
         Not readable, too large, not TOML/JSON, or any field wrong; the message names the field.
     """
+    return read_scene(read_tables(path))
+
+
+def read_tables(path: str | Path) -> Any:
+    """The tables of a TOML or JSON file, not checked yet.
+
+    Raises
+    ------
+    SceneError
+        Not readable, too large, or not TOML/JSON.
+    """
+    record("path", path, str, Path)
     path = Path(path)
     try:
         size = path.stat().st_size
@@ -75,7 +87,7 @@ def load_scene(path: str | Path) -> SceneFile:
         raise
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{path}: not a scene file ({error})") from error
-    return read_scene(data)
+    return data
 
 
 def read_scene(data: Any) -> SceneFile:
@@ -130,14 +142,11 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     for key in ("parameter", "values"):
         if key not in path:
             raise SceneError(f"path[0].{key}: missing; a path needs it")
-    parameter, values = path["parameter"], path["values"]
-    if not isinstance(values, list) or len(values) < 2:
-        raise SceneError(f"path[0].values = {values!r}: a list of two or more numbers is needed")
-    values = tuple(number(f"path[0].values[{i}]", v) for i, v in enumerate(values))
+    parameter, values = path["parameter"], path_values("path[0].values", path["values"])
     fixed = {key: value for key, value in data.items() if key != "path"}
 
     def at(value: float) -> Scene:
-        return read_scene(_set(fixed, parameter, value)).scene
+        return read_scene(with_number(fixed, "path[0].parameter", parameter, value)).scene
 
     # one model and mesh for the whole path: the largest that any of its scenes needs
     scenes = [at(value) for value in values]
@@ -152,14 +161,29 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     return replace(end, ramp=ramp, description=description)
 
 
-def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any]:
-    """A copy of a scene file's tables with one number changed."""
+def with_number(
+    data: Mapping[str, Any], field: str, parameter: Any, value: float
+) -> dict[str, Any]:
+    """A copy of a scene file's tables with one number changed.
+
+    Parameters
+    ----------
+    field : the place that names the parameter, for messages.
+    parameter : path of the number, "substrate.contact_angle" or "particle[0].center[2]".
+
+    Raises
+    ------
+    SceneError
+        If there is no such place.
+    """
+    if not isinstance(parameter, str):
+        raise SceneError(f"{field} = {parameter!r}: must be text")
     steps = re.findall(r"[a-z_]+|\[\d+\]", parameter)
     well_formed = re.fullmatch(r"[a-z_]+(\[\d+\])?\.[a-z_]+(\[\d+\])?", parameter)
     keys = [step for step in steps if not step.startswith("[")]
     if not well_formed or keys[1] not in KEYS.get(keys[0], ()):
         raise SceneError(
-            f"path[0].parameter = {parameter!r}: must be the path of a number in the scene file, "
+            f"{field} = {parameter!r}: must be the path of a number in the scene file, "
             'like "substrate.contact_angle" or "particle[0].center[2]"'
         )
     changed = copy.deepcopy(dict(data))
@@ -173,7 +197,7 @@ def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any
         place[indices[-1]] = value
     except (AttributeError, IndexError, KeyError, TypeError) as error:
         raise SceneError(
-            f"path[0].parameter = {parameter!r}: there is no such place in the scene file"
+            f"{field} = {parameter!r}: there is no such place in the scene file"
         ) from error
     return changed
 
@@ -249,7 +273,7 @@ def _line(table: Mapping[str, Any]) -> str:
 def _start(table: Mapping[str, Any]) -> str | None:
     start = table.get("start", "auto")
     if start.endswith(".npz"):
-        raise later("solver.start from a state file")
+        return None  # the solver reads it
     choice("solver.start", start, ("auto", *STARTS))
     return None if start == "auto" else str(start)
 
@@ -404,7 +428,11 @@ def _solver(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
     for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
         if key in table:
             number(f"solver.{key}", table[key], above=0.0)
-    return {key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table}
+    limits: dict[str, Any] = {
+        key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table
+    }
+    start = table.get("start", "auto")
+    return limits | {"start": start} if start.endswith(".npz") else limits
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -6,12 +6,13 @@ The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 from __future__ import annotations
 
 from dataclasses import replace
+from types import NoneType
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..checks import choice, number
+from ..checks import choice, flag, number, record
 from ..errors import SceneError
 from ..solids import Sphere
 from ..splines import Grading, Space, points_of
@@ -36,7 +37,7 @@ from ..terms import (
     TrimmedContactLine,
     Volume,
 )
-from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
 from .scene import FreeEdge, Ramp, Scene
 from .sheet_through import sheet_through
 from .start import check_net, funnel
@@ -86,13 +87,13 @@ def liquid_sheet(
         A value out of its range, both pressure and volume, a particle whose middle is not inside
         the rim, a model with a mirror plane that the particle's place does not have.
     """
-    liquid = liquid or Liquid()
+    liquid, asked = with_defaults(liquid, discretization)
+    record("particle", particle, Sphere, NoneType)
+    flag("sheet.liquid_weight", liquid_weight)
     choice("sheet.boundary", boundary, BOUNDARIES)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
     through = contact_line == "trimmed"
-    mesh = (discretization or Discretization()).mesh(
-        **(THROUGH if through else {"elements": 8 if boundary == "square" else 20})
-    )
+    mesh = asked.mesh(**(THROUGH if through else {"elements": 8 if boundary == "square" else 20}))
     size = number("sheet.size", size, above=0.0)
     gravity = number("gravity.acceleration", gravity, least=0.0)
     if pressure is not None and volume is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -116,6 +116,8 @@ class SphereLattice:
         )
 
 
+MOST = 1_000_000
+"""Spheres of a list at most: about 200 MB with their tree."""
 HALF = 1 << 20
 """Lattice sites are numbered from minus to plus this."""
 
@@ -138,15 +140,19 @@ class Spheres:
     base: float | None = None
 
     def __post_init__(self) -> None:
-        places = np.array(
-            [vector(f"substrate.centers[{i}]", c) for i, c in enumerate(self.centers)]
-        ).reshape(-1, 3)
+        places = _places(self.centers)
         if not len(places):
             raise SceneError("substrate.centers = []: at least one sphere is needed")
+        if len(places) > MOST:
+            raise SceneError(
+                f"substrate.centers: {len(places)} spheres given, at most {MOST}; an unbounded "
+                'lattice is substrate.kind = "sphere_lattice"'
+            )
         count = len(places)
         sizes = _each("substrate.radii", self.radii, count)
-        for i, r in enumerate(sizes):
-            number(f"substrate.radii[{i}]", r, above=0.0)
+        bad = np.flatnonzero(~(np.isfinite(sizes) & (sizes > 0)))
+        for i in bad[:1]:
+            number(f"substrate.radii[{i}]", float(sizes[i]), above=0.0)
         angles = _each("substrate.contact_angle", self.contact_angle, count)
         for angle in set(angles.tolist()):
             contact_angle("substrate.contact_angle", angle)
@@ -214,9 +220,27 @@ def plane_below(points: Array, height: float) -> Nearest:
 
 
 def _each(field: str, value: float | Sequence[float] | Array, count: int) -> Array:
-    values = np.asarray(value, float)
-    if values.ndim == 0:
-        return np.full(count, float(values))
+    if np.ndim(value) == 0:
+        return np.full(count, number(field, value))
+    try:
+        values = np.asarray(value, float)
+    except (TypeError, ValueError):
+        values = np.array([number(f"{field}[{i}]", v) for i, v in enumerate(value)])  # type: ignore[arg-type]
     if values.shape != (count,):
-        raise SceneError(f"{field}: {len(values)} given for {count} spheres; one or one per sphere")
+        raise SceneError(
+            f"{field}: an array of shape {values.shape} given for {count} spheres; one number or "
+            "one per sphere"
+        )
     return values
+
+
+def _places(centers: Any) -> Array:
+    """(n, 3) finite numbers."""
+    if not isinstance(centers, Iterable):
+        raise SceneError(f"substrate.centers = {centers!r}: a list of [x, y, z] is needed")
+    if isinstance(centers, np.ndarray) and centers.dtype == float and centers.shape[1:] == (3,):
+        places = np.array(centers)
+        if np.isfinite(places).all():
+            return places
+    rows = [vector(f"substrate.centers[{i}]", c) for i, c in enumerate(centers)]
+    return np.array(rows).reshape(-1, 3)

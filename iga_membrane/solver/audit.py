@@ -51,6 +51,8 @@ class Audit:
     angle : mean cosine of the measured contact angle minus that of Young's.
     penetration : depth in the solid on a sampling four times denser than the quadrature, over the
         scene's length (plane) or the sphere's radius; there also the line's distance from it.
+    deepest : the point of the sampling that lies deepest, or nearest to the solid, in the scene's
+        scale; None without a solid.
     """
 
     residual: float
@@ -60,6 +62,12 @@ class Audit:
     line: float = 0.0
     angle: float = 0.0
     penetration: float = 0.0
+    deepest: tuple[float, float, float] | None = None
+
+    @property
+    def defects(self) -> dict[str, float]:
+        """Name to value."""
+        return {name: value for name, value in vars(self).items() if name != "deepest"}
 
 
 def audit(
@@ -125,7 +133,7 @@ def audit(
     residual = float(np.linalg.norm(total[:-1])) / size
     inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
     if contact is not None:
-        depth = _depth(surface, contact, points)
+        depth, place = _depth(surface, contact, points)
         weight = body.gradient[2] * inside
         carried = -sector.copies * float(push[..., 2].sum())
         if scene.line_inside is not None:
@@ -136,24 +144,27 @@ def audit(
             return Audit(residual, volume, angle=cosine, penetration=depth)
         missing = abs(carried + weight) / max(abs(weight), abs(carried), TINY)
         if not stands_free(scene):
-            return Audit(residual, missing_volume(terms, inside), penetration=depth)
+            return Audit(residual, missing_volume(terms, inside), penetration=depth, deepest=place)
         loose = [axis not in sector.mirrored for axis in "xy"]
         pushed = sector.copies * push[..., :2].sum(axis=(0, 1)) * loose
         pushed = pushed - np.array(body.gradient[:2]) * inside * loose
         sideways = float(np.hypot(*pushed)) / max(abs(weight), TINY)
         volume = missing_volume(terms, inside)
-        return Audit(residual, volume, missing, sideways, penetration=depth)
+        return Audit(residual, volume, missing, sideways, penetration=depth, deepest=place)
     if not lines:
         return Audit(residual, missing_volume(terms, inside))
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
     cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
     free = not any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports)
-    depth = max(0.0, -_nearest(surface, points, sector, solid))
+    gap, place = _nearest(surface, points, sector, solid)
+    depth = max(0.0, -gap)
     if solid is not None:
         inside += _under_cap(line, solid)
         depth = max(depth, float(np.abs(solid.gap(line.position)).max())) / solid.radius
     if solid is not None or not free:
-        return Audit(residual, missing_volume(terms, inside), angle=cosine, penetration=depth)
+        return Audit(
+            residual, missing_volume(terms, inside), angle=cosine, penetration=depth, deepest=place
+        )
     angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
     forces = vertical_forces(line, body, tension, float(angle))
     weight = body.gradient[2] * inside
@@ -165,6 +176,7 @@ def audit(
         line=abs(forces.push - forces.measured - weight) / scale,
         angle=cosine,
         penetration=depth,
+        deepest=place,
     )
 
 
@@ -192,16 +204,28 @@ def stands_free(scene: Scene) -> bool:
     )
 
 
-def _depth(surface: Surface, contact: ContactSet, points: tuple[int, int]) -> float:
-    """Largest depth over the contact length, sampled four times denser than the quadrature."""
+Place = tuple[float, float, float]
+
+
+def _depth(
+    surface: Surface, contact: ContactSet, points: tuple[int, int]
+) -> tuple[float, Place | None]:
+    """Largest depth over the contact length, sampled four times denser than the quadrature, and
+    where the membrane is nearest to the solid."""
     touch = contact.touch(surface.points)
     near = np.flatnonzero((touch.at.gap < contact.length).any(axis=1))
-    deepest = 0.0
+    lowest, place = np.inf, None
     for some in np.array_split(contact.elements[near], max(1, len(near) // 500)):
         dense = surface.space.table((4 * points[0], 4 * points[1]), some)
-        gap = contact.solid.nearest(dense.values @ surface.points[dense.functions]).gap
-        deepest = max(deepest, -float(gap.min(initial=np.inf)))
-    return deepest / contact.length
+        x = (dense.values @ surface.points[dense.functions]).reshape(-1, 3)
+        gap = contact.solid.nearest(x).gap
+        if gap.size and gap.min() < lowest:
+            lowest, place = float(gap.min()), _place(x[gap.argmin()])
+    return max(0.0, -lowest) / contact.length, place
+
+
+def _place(x: Array) -> Place:
+    return float(x[0]), float(x[1]), float(x[2])
 
 
 def _under_cap(line: ContactLine, solid: Sphere) -> float:
@@ -227,12 +251,13 @@ def scatter(total: Array, absolute: Array, motion: Motion, functions: Index, for
 
 def _nearest(
     surface: Surface, points: tuple[int, int], sector: Sector, solid: Sphere | None
-) -> float:
-    """Smallest gap to the solid on a sampling four times denser than the quadrature."""
+) -> tuple[float, Place]:
+    """Smallest gap to the solid on a sampling four times denser than the quadrature, and where."""
     one, two = surface.space.bases
     n1 = 4 * points[0] * one.elements // sector.copies
     s = np.linspace(one.breaks[0], one.breaks[-1], n1 * sector.copies + 1)[: n1 + 1]
     t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points[1] * two.elements + 1)
     lines = np.tensordot(one.matrix(s), surface.net, axes=1)
-    x = rational_matrix(surface.space, t) @ lines
-    return float((x[..., 2] if solid is None else solid.gap(x)).min())
+    x = (rational_matrix(surface.space, t) @ lines).reshape(-1, 3)
+    gap = x[:, 2] if solid is None else solid.gap(x)
+    return float(gap.min()), _place(x[gap.argmin()])

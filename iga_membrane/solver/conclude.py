@@ -10,23 +10,24 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..solids import Plane, Sphere, SphereLattice
 from ..surface.surface import Surface
-from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine
+from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_line import contact_line, vertical_forces
 from .footing import Footing, engulfed, footing
 from .forces import particle_forces, pull_on_sphere
 from .linear import SingularMatrix
-from .load_stepping import Bracket, LoadStep
+from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, sphere_of, volume
 from .newton import NewtonResult
 from .options import SolverOptions
 from .solution import Solution
 from .stability import Stability, stability_of
-from .status import Status
+from .status import REMEDY, Status
 from .trimmed_audit import trimmed_audit
 
 
@@ -68,6 +69,7 @@ class Outcome:
     result: NewtonResult
     steps: list[LoadStep]
     bracket: Bracket | None = None
+    progress: Progress | None = None
 
 
 def conclude(
@@ -78,24 +80,17 @@ def conclude(
     surface, multipliers = result.surface, result.multipliers
     verdict, checked, kind = None, None, None
     status, message = result.status, result.message
-    if status is None:
-        try:
-            verdict = stability_of(assembly, surface, multipliers)
-        except (SingularMatrix, np.linalg.LinAlgError) as error:
-            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {error}"
-    if status is None and options.audit:
-        motion = assembly.spines.on(surface)
-        body = assembly.density(multipliers)
-        load = assembly.line_load(multipliers)
-        checked = (
-            audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
-            if assembly.trim is None
-            else trimmed_audit(scene, surface, motion, body, assembly.trim)
-        )
+    if status in REMEDY:
+        message = f"{message}: {REMEDY[status]}"
+    if status is not Status.INTERRUPTED:
+        verdict, doubt = _examined(assembly, surface, multipliers)
+        checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
+        if status is None and verdict is None:
+            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {doubt}"
     hold = _hold_force(scene, assembly, surface, multipliers)
+    inside = volume(assembly, surface)
     if status is None:
         assert verdict is not None
-        inside = volume(assembly, surface)
         status, message = _judge(scene, verdict, checked, inside)
         on_area = assembly.contact is not None and scene.line_inside is None
         if on_area or assembly.trim is not None:
@@ -105,7 +100,7 @@ def conclude(
     sunk = _too_soft(scene, assembly, multipliers)
     if sunk is not None and status is not Status.INTERRUPTED:
         status, message = sunk
-    if verdict is None and status is not Status.INTERRUPTED and _reaches_boundary(scene, surface):
+    if result.status not in (None, Status.INTERRUPTED) and _reaches_boundary(scene, surface):
         status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
         message = "the contact line reaches the rim: no sheet is left between them"
     if status not in (Status.CONVERGED_STABLE, Status.INTERRUPTED):
@@ -126,12 +121,14 @@ def conclude(
         index=verdict.index if verdict else None,
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
         audit=checked,
+        volume_error=_volume_error(scene, inside),
         hold_force=hold,
         contact=_contact(scene, assembly, result, found, checked),
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
         load_steps=tuple(outcome.steps),
         bracket=outcome.bracket,
+        progress=outcome.progress,
         cpu_seconds={
             "compile": assembly.compile_seconds,
             "assembly": assembly.seconds,
@@ -141,6 +138,41 @@ def conclude(
         },
         warnings=_warnings(scene),
     )
+
+
+def _examined(
+    assembly: Assembly, surface: Surface, multipliers: Array
+) -> tuple[Stability | None, str]:
+    """Stability of a state, converged or not; or why there is none."""
+    with np.errstate(all="ignore"):
+        try:
+            verdict = stability_of(assembly, surface, multipliers)
+        except (SingularMatrix, GeometryError, np.linalg.LinAlgError, MemoryError) as error:
+            return None, str(error)
+    if not np.isfinite(verdict.smallest):
+        return None, "the smallest eigenvalue is not finite"
+    return verdict, ""
+
+
+def _audited(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+) -> Audit | None:
+    """The audit of a state, converged or not; None where there is no normal or no memory."""
+    body, load = assembly.density(multipliers), assembly.line_load(multipliers)
+    with np.errstate(all="ignore"):
+        try:
+            motion = assembly.spines.on(surface)
+            if assembly.trim is not None:
+                return trimmed_audit(scene, surface, motion, body, assembly.trim)
+            return audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
+        except (GeometryError, MemoryError):
+            return None
+
+
+def _volume_error(scene: Scene, inside: float) -> float | None:
+    """Relative error of a prescribed volume; None where none is."""
+    held = next((t for t in scene.local_terms() if isinstance(t, Volume)), None)
+    return abs(inside - held.target) / held.value if held else None
 
 
 NARROW = 0.02, 0.05
@@ -251,7 +283,7 @@ def _judge(
             f"error {verdict.error:.1e}"
         )
     if checked is None:
-        return Status.UNVERIFIED, "converged and stable; the audit was switched off"
+        return Status.UNVERIFIED, "converged and stable, but not audited"
     return Status.CONVERGED_STABLE, "converged, audited and stable"
 
 
@@ -320,8 +352,17 @@ def _contact(
         "wet_area": found["A_wet"],
         "wet_fraction": found["A_wet"] / (np.pi * rim**2),
         "max_penetration": checked.penetration * unit if checked else None,
+        "deepest_point": _deepest(scene, checked),
         "support_force": support * scale.force,
     }
+
+
+def _deepest(scene: Scene, checked: Audit | None) -> list[float] | None:
+    """World point where the membrane lies deepest in the solid, or nearest to it."""
+    if checked is None or checked.deepest is None:
+        return None
+    place: list[float] = scene.units.to_world(np.array(checked.deepest)).tolist()
+    return place
 
 
 def _footing(
@@ -358,6 +399,7 @@ def _footing(
         "wet_area": wet,
         "wet_fraction": wet / foot if foot else None,
         "max_penetration": checked.penetration * on.length * scale.length if checked else None,
+        "deepest_point": _deepest(scene, checked),
         "support_force": -float(feet.total[2]) * scale.force,
         "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
     }

@@ -26,6 +26,8 @@ NEARBY = (177.0, 179.0)
 TANGENT = 1e-10
 """Slope of the membrane against the solid that counts as none."""
 TRIES = 30
+SHORTEST = 1e-6
+"""Move of the edge over its place below which a solve that fails is not tried again."""
 GONE = 0.05
 """Edge over that at the nearest contact angle which counts as no contact."""
 
@@ -58,28 +60,31 @@ def tangent_edge(
     surface = regridded(near.surface, grading)
     place = here + (here - first) * (180.0 - NEARBY[1]) / (NEARBY[1] - NEARBY[0])
     before: tuple[float, float] | None = None
-    result = near
+    result, good = near, here
     for _ in range(TRIES):
         if place <= GONE * here:
             result.status = Status.TOPOLOGY_CHANGE
             result.message = "at 180 degrees the membrane touches the solid in a point at most"
             return scene, result
-        start = scene.local_surface().points
+        start = edge.scene_at(good).local_surface().points
         scene = edge.scene_at(place)
         assembly.load(scene)
         moved = surface.moved(surface.points + scene.local_surface().points - start)
-        result = newton(assembly, moved, result.multipliers, grading, options)
+        result = newton(assembly, moved, near.multipliers, grading, options)
         iterations += result.iterations
         result.iterations = iterations
         if result.status is not None:
-            return scene, result
+            if result.status is Status.INTERRUPTED or abs(place - good) <= SHORTEST * good:
+                return scene, result
+            place = 0.5 * (good + place)  # too far from the last state
+            continue
         slope = slope_at_edge(scene, result.surface)
         if abs(slope) <= TANGENT:
             return scene, result
         step = 1e-3 * place if slope < 0 else -1e-3 * place
         if before is not None and slope != before[1]:
             step = -slope * (place - before[0]) / (slope - before[1])
-        before, surface = (place, slope), result.surface
+        before, surface, good, near = (place, slope), result.surface, place, result
         place += float(np.clip(step, -0.1 * place, 0.1 * place))
     result.status = Status.STALLED
     result.message = f"the edge at 180 degrees was not found in {TRIES} solves"

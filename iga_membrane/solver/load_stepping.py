@@ -3,11 +3,13 @@ fails."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import GeometryError
 from ..scenes.scene import Ramp, Scene
 from ..surface.reparametrize import regridded
@@ -51,6 +53,44 @@ class Bracket:
     index_hi: int
 
 
+@dataclass(frozen=True, eq=False)
+class Progress:
+    """Where load stepping stands after a converged step: enough to go on as if never interrupted.
+
+    Attributes
+    ----------
+    digest : of the ramp and the options that it belongs to.
+    load : the last good one; step : the next one's length.
+    result : the state there; tractions : multipliers of contact, if there is any.
+    steps : every attempt so far.
+    found : solutions at the ramp's values so far.
+    """
+
+    digest: str
+    load: float
+    step: float
+    result: NewtonResult
+    tractions: Array | None
+    steps: Sequence[LoadStep]
+    found: Sequence[Any] = ()
+
+
+@dataclass(frozen=True)
+class Journal:
+    """Reads and writes the progress of load stepping.
+
+    Attributes
+    ----------
+    digest : of the ramp and the options.
+    write : called with the progress after every converged step.
+    start : where to go on, or None.
+    """
+
+    digest: str = ""
+    write: Callable[[Progress], None] = lambda progress: None
+    start: Progress | None = None
+
+
 @dataclass(eq=False)
 class LoadPath:
     """End of load stepping.
@@ -61,6 +101,7 @@ class LoadPath:
     scene : the scene at that load.
     steps : every attempt.
     bracket : of the limit point, if that is why it ended.
+    progress : from which it can go on.
     """
 
     result: NewtonResult
@@ -68,6 +109,7 @@ class LoadPath:
     steps: list[LoadStep] = field(default_factory=list)
     last_good: float = 0.0
     bracket: Bracket | None = None
+    progress: Progress | None = None
 
 
 def load_stepping(
@@ -76,7 +118,8 @@ def load_stepping(
     options: NewtonOptions,
     smallest: float,
     report: Callable[[float], None] = lambda load: None,
-    reached: Callable[[Scene, NewtonResult], None] = lambda scene, result: None,
+    reached: Callable[[Scene, NewtonResult], Sequence[Any]] = lambda scene, result: (),
+    journal: Journal | None = None,
 ) -> LoadPath:
     """From the ramp's own start at load 0 to load 1, in steps that grow and halve.
 
@@ -86,18 +129,25 @@ def load_stepping(
     smallest : step of the load below which to give up: LIMIT_POINT if the smallest eigenvalue
         foretells a fold there, else STALLED.
     report : called with every load reached.
-    reached : called with the scene and the state at each of the ramp's values.
+    reached : called with the scene and the state at each of the ramp's values; what it returns,
+        the solutions so far, is kept with the progress.
+    journal : of converged steps, to go on after an interruption.
     """
-    scene = ramp(0.0)
-    assembly.load(scene)
-    result = first(scene, assembly, options)
-    begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0))
-    path = LoadPath(result, scene, [begun])
-    if result.status is not None:
-        return path
-    reached(scene, result)
+    journal = journal or Journal()
+    stops = ramp.stops
+    if journal.start is not None:
+        path, step, found = _resumed(journal.start, ramp, assembly)
+    else:
+        scene = ramp(0.0)
+        assembly.load(scene)
+        result = first(scene, assembly, options)
+        begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0))
+        path, step = LoadPath(result, scene, [begun]), 0.25
+        if result.status is not None:
+            return path
+        found = reached(scene, result)
+        _note(journal, path, step, assembly, found)
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
-    step, stops = 0.25, ramp.stops
     while path.last_good < 1.0:
         stop = float(stops[np.searchsorted(stops, path.last_good, "right")])
         load = min(stop, path.last_good + step)
@@ -109,24 +159,53 @@ def load_stepping(
             path.result, path.scene, path.last_good = result, scene, load
             report(load)
             if load == stop:
-                reached(scene, result)
+                found = reached(scene, result)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
+            _note(journal, path, step, assembly, found)
         elif result.status is Status.INTERRUPTED:
             path.result.status, path.result.message = result.status, result.message
             break
         else:
             step = 0.5 * min(step, load - path.last_good)
             lo, hi = ramp.value(path.last_good), ramp.value(load)
-            if step < smallest and abs(hi - lo) <= BRACKET * max(abs(lo), abs(hi)):
+            lost = step < smallest and abs(hi - lo) <= BRACKET * max(abs(lo), abs(hi))
+            if lost or len(path.steps) > ATTEMPTS * len(stops):
                 _give_up(assembly, path, ramp, load, result, attempts)
                 break
     return path
+
+
+def _note(
+    journal: Journal, path: LoadPath, step: float, assembly: Assembly, found: Sequence[Any]
+) -> None:
+    """Write down a converged step."""
+    tractions = None if assembly.contact is None else assembly.contact.multipliers.copy()
+    result = replace(path.result, iterations=list(path.result.iterations))
+    path.progress = Progress(
+        journal.digest, path.last_good, step, result, tractions, tuple(path.steps), tuple(found)
+    )
+    journal.write(path.progress)
+
+
+def _resumed(
+    start: Progress, ramp: Ramp, assembly: Assembly
+) -> tuple[LoadPath, float, Sequence[Any]]:
+    """The path as it was when its progress was written, and the next step."""
+    scene = ramp(start.load)
+    assembly.load(scene)
+    if assembly.contact is not None and start.tractions is not None:
+        assembly.contact.multipliers = start.tractions.copy()
+    result = replace(start.result, iterations=list(start.result.iterations))
+    path = LoadPath(result, scene, list(start.steps), start.load, progress=start)
+    return path, start.step, start.found
 
 
 BRACKET = 4e-4
 """Width of a bracket over the parameter's value."""
 BOUNDED = 0.02
 """Distance from a ramp's known bound, over it, within which a failure is that bound's."""
+ATTEMPTS = 200
+"""Loads tried at most, per value of the ramp: beyond, the path creeps."""
 PATIENCE = 20
 """Newton iterations of one attempt: a load that needs more is approached by shorter steps."""
 FOLD = 3.0
@@ -194,7 +273,9 @@ def _give_up(
         )
         return
     reason = failed.message or f"{failed.index} negative eigenvalues"
-    path.result.status = Status.STALLED
+    # the user's own limit of iterations, not the steps, may be what is too small
+    limited = failed.status is Status.MAX_ITER and options.max_iterations < PATIENCE
+    path.result.status = Status.MAX_ITER if limited else Status.STALLED
     path.result.message = (
         f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.values[-1]:.6g}, with "
         f"steps of {hi - lo:.1e} ({reason})"

@@ -138,6 +138,9 @@ def newton(
         result.status, result.message = Status.LINEAR_SOLVE_FAILED, str(error)
     except (GeometryError, np.linalg.LinAlgError) as error:
         result.status, result.message = Status.NONFINITE, str(error)
+    except MemoryError:
+        result.status = Status.LINEAR_SOLVE_FAILED
+        result.message = "the memory does not suffice for a Newton step"
     if result.best is not None:
         _, result.surface, result.multipliers = result.best
     return result

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
-from ..checks import integer, number
+from ..checks import flag, integer, number
+from ..errors import SceneError
+
+ON_FAIL = ("raise", "return")
+"""What to do with a solution that is no success."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +26,8 @@ class SolverOptions:
     max_cpu_s : CPU seconds after which the solve stops, INTERRUPTED.
     max_memory_gb : a scene whose matrices would need more is refused.
     audit : whether to check the result on an independent path; without it, UNVERIFIED.
+    start : a state file to start from, or to go on from where a path of loads was interrupted.
+    checkpoint : a state file to be written after every converged load step.
     """
 
     tolerance: float = 1e-8
@@ -30,6 +37,8 @@ class SolverOptions:
     max_cpu_s: float = 600.0
     max_memory_gb: float = 8.0
     audit: bool = True
+    start: str | Path | None = None
+    checkpoint: str | Path | None = None
 
     def __post_init__(self) -> None:
         number("solver.tolerance", self.tolerance, least=1e-14, most=1e-2)
@@ -39,3 +48,19 @@ class SolverOptions:
             integer("solver.quadrature", self.quadrature, least=1, most=64)
         number("solver.max_cpu_s", self.max_cpu_s, above=0.0)
         number("solver.max_memory_gb", self.max_memory_gb, above=0.0)
+        flag("solver.audit", self.audit)
+        for name in ("start", "checkpoint"):
+            path = getattr(self, name)
+            if path is not None and Path(path).suffix != ".npz":
+                raise SceneError(f"solver.{name} = {str(path)!r}: must be a state file, .npz")
+
+    def numerical(self) -> SolverOptions:
+        """The choices that change numbers, without files and limits."""
+        plain = SolverOptions()
+        return replace(
+            self,
+            start=None,
+            checkpoint=None,
+            max_cpu_s=plain.max_cpu_s,
+            max_memory_gb=plain.max_memory_gb,
+        )

@@ -16,7 +16,7 @@ from ..surface.surface import Surface
 from ..terms import BodyDensity, SurfaceTension
 from .audit import Audit
 from .forces import ParticleForces
-from .load_stepping import Bracket, LoadStep
+from .load_stepping import Bracket, LoadStep, Progress
 from .newton import Iteration
 from .status import Status
 
@@ -33,7 +33,8 @@ class Solution:
     measures : energies, areas, heights, pressures, by the names of the result file.
     multipliers : of the constraints, by name, in the user's units.
     body : energy per volume of the Lagrangian in local, dimensionless units: minus the pressure.
-    index : negative eigenvalues; lambda_min : smallest one (tension over squared length).
+    index : negative eigenvalues; lambda_min : smallest one (tension over squared length). After a
+        failed solve both, like the audit, are those of the best state found.
     audit : relative defects found by the independent check, or None.
     hold_force : (3,) total force that holds the centroid.
     forces : on each particle.
@@ -41,6 +42,9 @@ class Solution:
     bracket : of the limit point where the status is LIMIT_POINT.
     iterations : the Newton iterations; load_steps : the loads tried.
     cpu_seconds : by what they were spent on.
+    volume_error : of a prescribed volume, relative.
+    progress : of load stepping that stopped short; a state file keeps it, and a solve that starts
+        from that file goes on there.
     """
 
     scene: Scene
@@ -63,11 +67,18 @@ class Solution:
     bracket: Bracket | None = None
     warnings: Sequence[str] = ()
     kind: str | None = None
+    volume_error: float | None = None
+    progress: Progress | None = field(default=None, repr=False)
 
     @property
     def success(self) -> bool:
         """Converged, audited and stable."""
         return self.status is Status.CONVERGED_STABLE
+
+    @property
+    def last_good_load(self) -> LoadStep | None:
+        """The last load step that converged; of a path, with the parameter's value."""
+        return next((step for step in reversed(self.load_steps) if step.status is None), None)
 
     @property
     def newton_iterations(self) -> int:
@@ -129,7 +140,7 @@ class Solution:
                 f"{self.lambda_min:.4g} ({self.scene.sector.model} model)"
             )
         if self.audit:
-            defects = ", ".join(f"{k} {v:.1e}" for k, v in vars(self.audit).items())
+            defects = ", ".join(f"{k} {v:.1e}" for k, v in self.audit.defects.items())
             lines.append(f"  {'audit':<24} {defects}")
         seconds = ", ".join(f"{k} {v:.3f}" for k, v in self.cpu_seconds.items())
         lines.append(

@@ -10,18 +10,20 @@ from typing import Literal
 
 import numpy as np
 
+from ..checks import choice, record
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
-from .load_stepping import LoadStep, load_stepping
+from .load_stepping import LoadPath, LoadStep, load_stepping
 from .newton import NEAR, NewtonOptions, NewtonResult, newton
-from .options import SolverOptions
+from .options import ON_FAIL, SolverOptions
 from .predictor import first
 from .quasi_static import quasi_static
 from .solution import Solution
+from .state import journal_of, start_surface
 from .status import Status
 from .trace import walk
 
@@ -51,16 +53,29 @@ def solve(
     ------
     SceneError
         Before any work, if the scene is ill-posed or too large for the memory allowed.
+    StateError
+        If ``options.start`` cannot be trusted.
     SolveError
         If the status is not ``CONVERGED_STABLE`` and ``on_fail`` is "raise".
     """
+    record("scene", scene, Scene)
     options = options or SolverOptions()
+    record("options", options, SolverOptions)
+    choice("on_fail", on_fail, ON_FAIL)
     started = process_time()
     _check_memory(scene, options)
     if scene.ramp is not None and scene.ramp.asked:
         solution = walk(scene.ramp, options, report)[-1]
         return _delivered(replace(solution, scene=scene), on_fail)
-    assembly = Assembly(scene, options.quadrature)
+    halfway = options.start is not None and _halfway(scene, options)
+    if options.start is not None and not halfway:
+        scene = replace(scene, surface=start_surface(options.start, scene), predictor=None)
+    try:
+        assembly = Assembly(scene, options.quadrature)
+    except MemoryError as error:
+        raise SceneError(
+            "discretization.elements: the mesh does not fit into memory; choose fewer elements"
+        ) from error
     settings = NewtonOptions(
         options.max_iterations,
         options.tolerance,
@@ -68,18 +83,42 @@ def solve(
         near=0.0 if _rolls(scene) else NEAR,
         deadline=started + options.max_cpu_s,
     )
-    outcome = _iterate(scene, assembly, settings, options, report)
+    if halfway:
+        path = _stepped(scene, assembly, settings, options, report)
+        outcome = Outcome(path.scene, path.result, path.steps, path.bracket, path.progress)
+    else:
+        outcome = _iterate(scene, assembly, settings, options, report)
     assembly.load(outcome.scene)
     solution = conclude(outcome, assembly, options, started)
     if solution.status is Status.UNDERRESOLVED and len(outcome.steps) == 1 and scene.ramp:
         # a mesh may fake an equilibrium where there is none; the way to the scene tells
-        path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
+        path = _stepped(scene, assembly, settings, options, report)
         if path.bracket is not None:
             assembly.load(path.scene)
             steps = [*outcome.steps, *path.steps]
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
             solution = conclude(outcome, assembly, options, started)
     return _delivered(replace(solution, scene=scene), on_fail)
+
+
+def _halfway(scene: Scene, options: SolverOptions) -> bool:
+    """Whether the start is this scene's own load stepping, interrupted."""
+    return scene.ramp is not None and journal_of(scene.ramp, options).start is not None
+
+
+def _stepped(
+    scene: Scene,
+    assembly: Assembly,
+    settings: NewtonOptions,
+    options: SolverOptions,
+    report: Callable[[float], None],
+) -> LoadPath:
+    """Load stepping along the scene's ramp, from where its journal says."""
+    assert scene.ramp is not None
+    journal = journal_of(scene.ramp, options)
+    return load_stepping(
+        scene.ramp, assembly, settings, options.min_load_step, report, journal=journal
+    )
 
 
 def _rolls(scene: Scene) -> bool:
@@ -126,13 +165,14 @@ def _iterate(
 
         def find(near: Scene) -> NewtonResult:
             lines = Assembly(near, options.quadrature)
-            return _iterate(near, lines, settings, options, report).result
+            own = replace(options, start=None, checkpoint=None)
+            return _iterate(near, lines, settings, own, report).result
 
         found, state = tangent_edge(scene.free_edge, assembly, settings, find)
         return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
     if scene.ramp is not None and scene.ramp.only:
-        path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
-        return Outcome(path.scene, path.result, path.steps, path.bracket)
+        path = _stepped(scene, assembly, settings, options, report)
+        return Outcome(path.scene, path.result, path.steps, path.bracket, path.progress)
     start, grading = scene.local_surface(), scene.meridian_grading
     direct = first(scene, assembly, settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
@@ -141,15 +181,15 @@ def _iterate(
     outcome = Outcome(scene, direct, steps)
     if scene.ramp is not None:
         log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
-        path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
+        path = _stepped(scene, assembly, settings, options, report)
         path.result.linear_seconds += direct.linear_seconds
         steps = steps + path.steps
         if path.result.status is None:
             return Outcome(path.scene, path.result, steps)
         partial = path.last_good > 0 and direct.status is not None
-        outcome = Outcome(scene, direct, steps)
+        outcome = Outcome(scene, direct, steps, progress=path.progress)
         if partial:
-            outcome = Outcome(path.scene, path.result, steps, path.bracket)
+            outcome = Outcome(path.scene, path.result, steps, path.bracket, path.progress)
     if direct.status is not None and outcome.bracket is None and assembly.contact is None:
         assembly.load(scene)
         nearest = newton(assembly, start, None, grading, replace(settings, near=np.inf))

@@ -22,3 +22,14 @@ class Status(Enum):
     UNDERRESOLVED = "the mesh is too coarse for this scene"
     INTERRUPTED = "stopped from outside"
     UNVERIFIED = "converged, audit switched off"
+
+
+REMEDY = {
+    Status.STALLED: "start nearer to the solution, or take more discretization.elements",
+    Status.MAX_ITER: "start nearer to the solution, take more discretization.elements, or raise "
+    "max_iterations",
+    Status.LINEAR_SOLVE_FAILED: "hold what is free to move, or change discretization.elements",
+    Status.NONFINITE: "start nearer to the solution, clear of the centres of spheres",
+    Status.INTERRUPTED: "raise solver.max_cpu_s",
+}
+"""What to change after an iteration that did not converge."""

@@ -7,17 +7,18 @@ from dataclasses import dataclass, replace
 from time import process_time
 from typing import Literal
 
-from ..checks import number
-from ..errors import SceneError, SolveError
+from ..checks import choice, path_values
+from ..errors import SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
 from .newton import NEAR, NewtonOptions, NewtonResult
-from .options import SolverOptions
+from .options import ON_FAIL, SolverOptions
 from .predictor import first
 from .solution import Solution
+from .state import journal_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +72,13 @@ def trace(
     Raises
     ------
     SceneError
-        Fewer than two values.
+        Fewer than two values, too many, or one that is not a number.
+    StateError
+        If ``options.start`` is not the state of this path.
     SolveError
     """
-    if len(values) < 2:
-        raise SceneError(f"values = {list(values)}: a path needs two or more")
-    checked = tuple(number(f"values[{i}]", v) for i, v in enumerate(values))
+    choice("on_fail", on_fail, ON_FAIL)
+    checked = path_values("values", values)
     ramp = Ramp(parameter, checked, scene_at, asked=True)
     found = walk(ramp, options or SolverOptions(), report)
     reached = [s for s in found if s.success]
@@ -97,17 +99,24 @@ def walk(
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
         return _each(ramp, settings, options, started, report)
     assembly = Assembly(ramp(0.0), options.quadrature)
-    found: list[Solution] = []
+    journal = journal_of(ramp, options)
+    if options.start is not None and journal.start is None:
+        raise StateError(
+            f"{options.start}: not the state of this path, interrupted, with these options; a path "
+            "starts from its own first value: leave solver.start out"
+        )
+    found: list[Solution] = list(journal.start.found) if journal.start else []
 
-    def reached(scene: Scene, state: NewtonResult) -> None:
+    def reached(scene: Scene, state: NewtonResult) -> Sequence[Solution]:
         assembly.load(scene)
         found.append(conclude(Outcome(scene, state, []), assembly, options, started))
+        return found
 
-    path = load_stepping(ramp, assembly, settings, options.min_load_step, report, reached)
+    path = load_stepping(ramp, assembly, settings, options.min_load_step, report, reached, journal)
     history = [_with_measures(step, ramp, found) for step in path.steps]
     if path.result.status is not None:
         assembly.load(path.scene)
-        outcome = Outcome(path.scene, path.result, history, path.bracket)
+        outcome = Outcome(path.scene, path.result, history, path.bracket, path.progress)
         return [*found, conclude(outcome, assembly, options, started)]
     return [*found[:-1], replace(found[-1], load_steps=tuple(history))]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -30,6 +31,11 @@ class Surface:
         points = np.asarray(self.points)
         if points.dtype == object or not np.issubdtype(points.dtype, np.floating):
             raise GeometryError(f"control points: dtype {points.dtype} given, float64 expected")
+        if points.dtype.itemsize < 8:
+            warnings.warn(
+                f"control points: {points.dtype} given, computed in float64 with its digits",
+                stacklevel=3,
+            )
         if points.shape != (self.space.count, 3):
             raise GeometryError(
                 f"control points: shape {points.shape} given, {(self.space.count, 3)} expected"

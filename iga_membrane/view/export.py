@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import OutputError
+from ..files import write_whole
 from ..solver.solution import Solution
+from ..solver.state import write_state
 
 
 def save(solution: Solution, path: str | Path) -> None:
@@ -28,14 +26,12 @@ def save(solution: Solution, path: str | Path) -> None:
     path = Path(path)
     match path.suffix:
         case ".json":
-            from .result_file import result_text
+            from ..solver.result_file import result_text
 
             text = result_text(solution)
             write_whole(path, lambda file: Path(file).write_text(text, encoding="utf-8"))
         case ".npz":
-            from .result_file import write_state
-
-            write_whole(path, lambda file: write_state(solution, file))
+            write_state(path, solution)
         case ".vtu":
             from .vtu import write_vtu
 
@@ -46,38 +42,3 @@ def save(solution: Solution, path: str | Path) -> None:
             write_whole(path, lambda file: plot(solution, file))
         case _:
             raise OutputError(f"{path}: ending must be .json, .npz, .vtu or .png")
-
-
-def write_whole(path: Path, write: Callable[[str], object]) -> None:
-    """Write to a temporary file beside ``path``, flush it to the disk, then rename it."""
-    try:
-        handle, name = tempfile.mkstemp(suffix=path.suffix, dir=path.parent or Path())
-        os.close(handle)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error})") from error
-    try:
-        write(name)
-        with open(name, "rb+") as file:
-            os.fsync(file.fileno())
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error})") from error
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(name)
-
-
-def check_folder(folder: Path) -> None:
-    """Make a folder and prove that files can be written in it, before any work.
-
-    Raises
-    ------
-    OutputError
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise OutputError(f"{folder}: cannot be written ({error})") from error

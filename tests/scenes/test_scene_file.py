@@ -144,7 +144,6 @@ def test_misspelt_keys_are_refused(path, said):
         ("solver.contact", "penalty", "not available yet"),
         ("solver.contact_line", "adhesion", "not available here"),
         ("solver.start", "flat", "only at 180 degrees"),
-        ("solver.start", "state.npz", "not available yet"),
         ("substrate.base", -0.1, "a plane has no such field"),
         ("sheet", {"size": 5.0}, "does not belong"),
     ],

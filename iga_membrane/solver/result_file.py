@@ -1,8 +1,7 @@
-"""The result file (JSON) and the state file (npz without pickle, with a checksum)."""
+"""The result file (JSON)."""
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from typing import Any
@@ -11,8 +10,9 @@ import numpy as np
 
 from .. import __version__
 from ..scenes.scene_file import SCHEMA
-from ..solver.forces import ParticleForces
-from ..solver.solution import Solution
+from .forces import ParticleForces
+from .load_stepping import LoadStep
+from .solution import Solution
 
 
 def result(solution: Solution) -> dict[str, Any]:
@@ -44,9 +44,10 @@ def result(solution: Solution) -> dict[str, Any]:
             "hold_force": list(solution.hold_force),
         },
         "forces": [_forces(found) for found in solution.forces],
-        "audit": vars(verdict) if verdict else None,
-        "history": [vars(step) | {"status": step.status and step.status.name}
-                    for step in solution.load_steps],
+        "audit": verdict.defects if verdict else None,
+        "volume_error": solution.volume_error,
+        "last_good_load": _step(solution.last_good_load),
+        "history": [_step(step) for step in solution.load_steps],
         "iterations": [vars(step) for step in solution.iterations],
     }  # fmt: skip
     cleaned: dict[str, Any] = _finite(record)
@@ -58,26 +59,8 @@ def result_text(solution: Solution) -> str:
     return json.dumps(result(solution), indent=1, allow_nan=False) + "\n"
 
 
-def write_state(solution: Solution, path: str) -> None:
-    """Control points and multipliers of a state, in the scene's own scale."""
-    scene = solution.scene
-    points = np.ascontiguousarray(scene.units.to_local(solution.surface.points))
-    multipliers = np.array(list(solution.multipliers.values()))
-    header = {
-        "schema": SCHEMA,
-        "version": __version__,
-        "status": solution.status.name,
-        "scene": _finite(dict(scene.description)),
-        "multipliers": list(solution.multipliers),
-        "sha256": hashlib.sha256(points.tobytes() + multipliers.tobytes()).hexdigest(),
-    }
-    with open(path, "wb") as file:
-        np.savez(
-            file,
-            header=np.frombuffer(json.dumps(header).encode(), np.uint8),
-            points=points,
-            multipliers=multipliers,
-        )
+def _step(step: LoadStep | None) -> dict[str, Any] | None:
+    return None if step is None else vars(step) | {"status": step.status and step.status.name}
 
 
 def _forces(found: ParticleForces) -> dict[str, Any]:

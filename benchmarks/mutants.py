@@ -1,0 +1,87 @@
+"""Would the tests notice? Twenty-four faults, each put by hand into a copy of the package.
+
+``OMP_NUM_THREADS=1 python benchmarks/mutants.py`` flips a sign, drops a factor or skips a term of
+the energies and of the audit, runs the tests that ought to mind, and prints what caught it.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+TERMS = ("terms", "solver/test_solve.py", "verification/test_sheet_on_particle.py",
+         "verification/test_droplet_on_plane.py", "robustness/test_audit.py",
+         "verification/test_pinned_cap.py", "verification/test_square_sheet.py")  # fmt: skip
+AUDIT = ("robustness/test_audit.py", "robustness/test_never_wrong_silently.py",
+         "verification/test_sheet_on_particle.py")  # fmt: skip
+
+MUTANTS = [
+    ("terms/variations.py", "+ 0.5 * ez * x[..., 2]", "+ ez * x[..., 2]"),
+    ("terms/variations.py", "conjugate += tension * at.c", "conjugate -= tension * at.c"),
+    ("terms/variations.py", "f2 = cross(conjugate, at.a1)", "f2 = cross(at.a1, conjugate)"),
+    ("terms/variations.py", "scale = 0.5 * tension", "scale = tension"),
+    ("terms/variations.py", "right.append(lift)", "right.append(0.0 * lift)"),
+    ("terms/variations.py", "+ 0.5 * ez * dz", "+ ez * dz"),
+    ("terms/contact_line.py", "float(-self.gamma * np.cos", "float(self.gamma * np.cos"),
+    ("terms/contact_line.py", "w = 0.5 * strength", "w = strength"),
+    ("terms/contact_line.py", "hessian[:, :, 1, :, 0] = -skew", "hessian[:, :, 1, :, 0] = skew"),
+    ("terms/gravity.py", "(-self.density_of_liquid * g", "(self.density_of_liquid * g"),
+    ("terms/volume.py", "BodyDensity(-self.pressure)", "BodyDensity(self.pressure)"),
+    ("terms/volume.py", "self.value - self.ends", "self.value + self.ends"),
+    ("terms/sphere_wetting.py", "3 * z / (4 * r**5)", "3 * z / (2 * r**5)"),
+    ("terms/sphere_wetting.py", "k3 * (1 - t**4) / 4", "k3 * (1 - t**4) / 3"),
+    ("terms/sphere_wetting.py", "-k1 - 2 * k2 * t", "-k1 - k2 * t"),
+    ("terms/edge_gap.py", "n, n, bend, load", "n, n, bend, -load"),
+    ("solver/audit.py", "float(np.linalg.norm(total[:-1])) / size", "0.0 / size"),
+    ("solver/audit.py", "abs(carried + weight)", "abs(carried - weight)"),
+    ("solver/audit.py", "pull = -contact.table", "pull = contact.table"),
+    ("solver/audit.py", "return max(0.0, -lowest) / contact.length", "return 0.0 * contact.length"),
+    ("solver/audit.py", "abs(inside - held.target) / held.value", "0.0 * held.value"),
+    ("solver/audit.py", "+ lines[0].strength / tension\n", "- lines[0].strength / tension\n"),
+    ("solver/audit.py", "forces.push - forces.line - weight", "forces.push - forces.line"),
+    ("solver/conclude.py", "if not value <= most:", "if False:"),
+]  # fmt: skip
+
+
+def main() -> int:
+    for file in ("terms/gravity.py", "solver/audit.py"):
+        assert not _caught_by(file, "", ""), "the tests fail without a fault"
+    survived = 0
+    for number, (file, old, new) in enumerate(MUTANTS, 1):
+        caught = _caught_by(file, old, new)
+        survived += not caught
+        print(f"| {number} | {file} | `{old.strip()}` | `{new.strip()}` | {caught or 'SURVIVED'} |",
+              flush=True)  # fmt: skip
+    print(f"\n{len(MUTANTS) - survived} of {len(MUTANTS)} caught")
+    return survived
+
+
+def _caught_by(file: str, old: str, new: str) -> str:
+    """The first test that fails with a mutant, or nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        for part in ("iga_membrane", "tests"):
+            shutil.copytree(ROOT / part, Path(folder) / part,
+                            ignore=shutil.ignore_patterns("__pycache__"))  # fmt: skip
+        shutil.copy(ROOT / "pyproject.toml", folder)
+        path = Path(folder) / "iga_membrane" / file
+        text = path.read_text()
+        assert old in text, f"{file} has no {old!r}"
+        path.write_text(text.replace(old, new, 1))
+        tests = TERMS if file.startswith("terms") else AUDIT
+        run = subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
+             *(f"tests/{name}" for name in tests)],
+            cwd=folder, capture_output=True, text=True, check=False,
+            env=os.environ | {"PYTHONPATH": folder},
+        )  # fmt: skip
+        lines = [x for x in run.stdout.splitlines() if x.startswith(("FAILED", "ERROR"))]
+        return lines[0].split(" ")[1].removeprefix("tests/") if lines else ""
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,118 @@
+"""One file per finished point, whole or not there: what a sweep resumes from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import socket
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..files import check_folder, write_whole
+from ..records import digest
+
+Record = dict[str, Any]
+LARGEST_RECORD = 50_000_000
+"""Bytes of a record at most."""
+
+
+class RecordStore:
+    """A folder of records, shared by any number of processes.
+
+    A point is claimed by a file that names host and process, made exclusively; the claim of a
+    process that is gone counts for nothing. A record is written beside and renamed, so that it is
+    whole or not there, and has a checksum.
+
+    Parameters
+    ----------
+    folder : made if it is not there.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        check_folder(folder)
+
+    @staticmethod
+    def key(parameters: Mapping[str, Any]) -> str:
+        """Name of a point by its parameters, whatever their order."""
+        return digest(dict(sorted(parameters.items())))[:24]
+
+    def read(self, key: str) -> Record | None:
+        """The record of a point, or None where there is none that can be trusted."""
+        path = self._path(key)
+        try:
+            if path.stat().st_size > LARGEST_RECORD:
+                return None
+            mark, text = path.read_text(encoding="utf-8").split("\n", 1)
+            record = json.loads(text) if mark == _checksum(text) else None
+        except (OSError, ValueError, RecursionError):
+            return None
+        return record if isinstance(record, dict) else None
+
+    def write(self, key: str, record: Record) -> None:
+        """Keep a record; its claim ends."""
+        text = json.dumps(record, indent=1) + "\n"
+        whole = f"{_checksum(text)}\n{text}"
+        write_whole(self._path(key), lambda name: Path(name).write_text(whole, encoding="utf-8"))
+        self.release(key)
+
+    def claim(self, key: str) -> bool:
+        """Whether this process may compute a point."""
+        path, mine = self._claim(key), self.folder / f".{key}.{os.getpid()}"
+        mine.write_text(_myself(), encoding="utf-8")
+        try:
+            if _abandoned(path):
+                # of those that see a dead claim one renames it away
+                os.rename(path, mine.with_suffix(".dead"))
+                mine.with_suffix(".dead").unlink()
+            os.link(mine, path)
+        except (FileExistsError, FileNotFoundError):
+            return False
+        finally:
+            mine.unlink()
+        return True
+
+    def release(self, key: str) -> None:
+        """Let others compute a point."""
+        self._claim(key).unlink(missing_ok=True)
+
+    def _path(self, key: str) -> Path:
+        return self.folder / f"{key}.json"
+
+    def _claim(self, key: str) -> Path:
+        return self.folder / f".{key}.claim"
+
+
+def _checksum(text: str) -> str:
+    return "sha256 " + hashlib.sha256(text.encode()).hexdigest()
+
+
+def _myself() -> str:
+    return f"{socket.gethostname()} {os.getpid()}"
+
+
+def _abandoned(path: Path) -> bool:
+    """Whether a claim was made on this host by a process that is gone."""
+    try:
+        host, _, pid = path.read_text(encoding="utf-8").partition(" ")
+        return host == socket.gethostname() and _gone(int(pid))
+    except FileNotFoundError:
+        return False
+
+
+def _gone(pid: int) -> bool:
+    """Whether a process has ended, also if its parent has not taken notice yet."""
+    try:
+        os.kill(pid, 0)
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+    except ProcessLookupError:
+        return True
+    except OSError:
+        return False  # another user's, or a system without /proc

@@ -1,0 +1,380 @@
+"""Sweeps: the equilibria of many scenes, on any executor, resumable after any kill."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from multiprocessing.reduction import ForkingPickler
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import __version__
+from ..arrays import Array
+from ..checks import integer, number
+from ..checks import record as check_record
+from ..errors import GeometryError, OutputError, SceneError
+from ..files import write_whole
+from ..progress import bar
+from ..records import digest
+from ..scenes.scene import Scene
+from ..solver.options import SolverOptions
+from ..solver.result_file import result
+from ..solver.solve import solve
+from .lanes import ProcessLanes, WorkerStartError
+from .record_store import Record, RecordStore
+
+log = logging.getLogger("iga_membrane")
+
+TRIES = 3
+"""How often a point whose worker is lost is tried before it is recorded as failed."""
+IN_FLIGHT = 64
+"""Points handed to the executor at a time."""
+MOST = 1_000_000
+"""Points of a sweep at most."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What a sweep found.
+
+    Attributes
+    ----------
+    parameters : names of what was varied.
+    records : one per point, in the order of the grid: ``parameters``, and either ``result`` (by the
+        names of the result file) or ``error``, why there is none.
+    computed : how many of them this call computed; the others were there.
+    mixed : whether records of other options or another version are among them.
+    """
+
+    parameters: tuple[str, ...]
+    records: Sequence[Record] = field(repr=False)
+    computed: int = 0
+    mixed: bool = False
+
+    @property
+    def success(self) -> bool:
+        """Whether every point is a success."""
+        return all(_status(record) == "CONVERGED_STABLE" for record in self.records)
+
+    @property
+    def statuses(self) -> dict[str, int]:
+        """How many points ended how."""
+        names = [_status(record) for record in self.records]
+        return {name: names.count(name) for name in sorted(set(names))}
+
+    def column(self, name: str) -> Array:
+        """(points,) a parameter or a measure; not a number where a point has none."""
+        return np.array([_number(_row(record).get(name)) for record in self.records])
+
+    def save(self, path: str | Path) -> None:
+        """Write a table of parameters, status and measures, .csv or .npz.
+
+        Raises
+        ------
+        OutputError
+        """
+        path = Path(path)
+        rows = [_row(record) for record in self.records]
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        if path.suffix == ".csv":
+            text = io.StringIO()
+            table = csv.DictWriter(text, names, lineterminator="\n")
+            table.writeheader()
+            table.writerows(rows)
+            write_whole(path, lambda name: Path(name).write_text(text.getvalue(), "utf-8"))
+        elif path.suffix == ".npz":
+            texts = ("status", "error")
+            columns: dict[str, Any] = {
+                name: np.array([str(row.get(name, "")) for row in rows])
+                if name in texts
+                else self.column(name)
+                for name in names
+            }
+            write_whole(path, lambda name: np.savez(name, **columns))
+        else:
+            raise OutputError(f"{path}: ending must be .csv or .npz")
+
+
+def sweep(
+    scene_of: Callable[..., Scene],
+    over: Mapping[str, Sequence[Any]],
+    *,
+    out: str | Path | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    timeout: float | None = None,
+    options: SolverOptions | None = None,
+    allow_mixed: bool = False,
+) -> Sweep:
+    """Solve the scenes of a grid of parameters.
+
+    Every finished point is a file in ``out``. The same call again computes only what is missing,
+    after a kill at any moment too; several processes may share the folder. A worker's death or
+    hang costs its own point, which is tried again.
+
+    Parameters
+    ----------
+    scene_of : parameters by name to a scene; for processes a function at the top level of a module.
+    over : name to values; the grid is their product, the last name varying fastest.
+    out : folder of the records; without it nothing is kept.
+    executor : any ``concurrent.futures.Executor``; by default processes that run their libraries
+        on one thread each.
+    workers, timeout : of the default executor: number of processes, and seconds per point.
+    options : of every solve.
+    allow_mixed : whether records of other options, scenes or versions may stand beside new ones.
+
+    Returns
+    -------
+    Sweep
+        A solve that fails, or a scene that is refused, is a record like any other.
+
+    Raises
+    ------
+    SceneError
+        An empty grid; a function that cannot be sent to a process; records in ``out`` of another
+        question.
+    OutputError
+        If ``out`` cannot be written; checked before any work.
+    """
+    options = options or SolverOptions()
+    check_record("options", options, SolverOptions)
+    if workers is not None:
+        integer("workers", workers, least=1, most=1024)
+    if timeout is not None:
+        number("timeout", timeout, above=0.0, unit="seconds")
+    points = _grid(over)
+    names = tuple(over)
+    store = None if out is None else RecordStore(Path(out))
+    keys = [RecordStore.key(point) for point in points]
+    found: dict[str, Record] = {}
+    if store is not None:
+        found = {key: kept for key in keys if (kept := store.read(key)) is not None}
+    mixed = _check_mixed(scene_of, found, options, allow_mixed)
+    left = {key: point for key, point in zip(keys, points, strict=True) if key not in found}
+    computed = 0
+    if left:
+        if executor is None:
+            _check_sendable(scene_of)
+        with bar("sweep", len(points)) as report:
+            job = _Job(scene_of, left, found, store, options, report)
+            try:
+                with _running(executor, workers, timeout) as pool:
+                    job.run(pool)
+            except BrokenExecutor as error:
+                log.warning("the executor broke (%s): going on with processes of our own", error)
+                with _running(None, workers, timeout) as pool:
+                    job.run(pool)
+            computed = len(job.computed)
+    records = [found[key] for key in keys]
+    return Sweep(names, records, computed, mixed)
+
+
+def _grid(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    check_record("over", over, Mapping)
+    if not over:
+        raise SceneError("over = {}: name at least one parameter with its values")
+    total = 1
+    for name, values in over.items():
+        if isinstance(values, str) or not hasattr(values, "__len__") or not len(values):
+            raise SceneError(f"over[{name!r}] = {values!r}: a list of values is needed")
+        total *= len(values)
+    if total > MOST:
+        raise SceneError(f"over: {total} points, at most {MOST}")
+    plain = [np.asarray(values).tolist() for values in over.values()]
+    for name, values in zip(over, plain, strict=True):
+        for i, value in enumerate(values):
+            if not isinstance(value, (str, bool)):
+                number(f"over[{name!r}][{i}]", value)
+    points = [dict(zip(over, values, strict=True)) for values in itertools.product(*plain)]
+    if len({RecordStore.key(point) for point in points}) < len(points):
+        raise SceneError("over: a value is given twice; give it once")
+    return points
+
+
+def _question(options: SolverOptions) -> str:
+    return digest([__version__, options.numerical()])
+
+
+def _fingerprint(scene: Scene) -> str:
+    """Of a scene by its words and terms; a scene without words also by its start."""
+    return digest([scene.description or scene.surface, scene.terms])
+
+
+def _check_mixed(
+    scene_of: Callable[..., Scene],
+    found: Mapping[str, Record],
+    options: SolverOptions,
+    allowed: bool,
+) -> bool:
+    """Whether records answer another question: other options, version, or (the first and the last
+    of them are built to see) another scene."""
+    question = _question(options)
+    other = any(kept.get("question") != question for kept in found.values())
+    solved = [kept for kept in found.values() if "result" in kept]
+    for kept in solved[:1] + solved[1:][-1:]:
+        other = other or kept.get("scene") != _fingerprint(scene_of(**kept["parameters"]))
+    if other and not allowed:
+        raise SceneError(
+            f"out: {len(found)} records there, some of other options, scenes or another version "
+            "than this sweep's; choose another folder, or allow_mixed=True"
+        )
+    return other
+
+
+def _check_sendable(scene_of: Callable[..., Scene]) -> None:
+    try:
+        ForkingPickler.dumps(scene_of)
+    except Exception as error:
+        raise SceneError(
+            f"scene_of = {scene_of!r}: cannot be sent to a process ({error}); define it at the top "
+            "level of a module, or give executor=ThreadPoolExecutor()"
+        ) from error
+
+
+@contextmanager
+def _running(
+    executor: Executor | None, workers: int | None, timeout: float | None
+) -> Iterator[Executor]:
+    """The executor; one of our own is ended with the sweep, at once if it is interrupted."""
+    if executor is not None:
+        yield executor
+        return
+    own = ProcessLanes(workers, timeout)
+    try:
+        yield own
+    finally:
+        own.shutdown(cancel_futures=True)
+
+
+class _Job:
+    """What is left of a sweep; fills ``found``, and ``computed`` with what it did itself."""
+
+    def __init__(
+        self,
+        scene_of: Callable[..., Scene],
+        left: Mapping[str, dict[str, Any]],
+        found: dict[str, Record],
+        store: RecordStore | None,
+        options: SolverOptions,
+        report: Callable[[float], None],
+    ) -> None:
+        self._scene_of, self._left, self._found = scene_of, left, found
+        self._store, self._options, self._report = store, options, report
+        self._tries = dict.fromkeys(left, 0)
+        self.computed: set[str] = set()
+
+    def run(self, pool: Executor) -> None:
+        """Compute what is left, or wait for the processes that do.
+
+        Raises
+        ------
+        BrokenExecutor
+            If the executor takes no more calls.
+        """
+        waiting = deque(key for key in self._left if key not in self._found)
+        running: dict[Future[Record], str] = {}
+        try:
+            while waiting or running:
+                for _ in range(len(waiting)):
+                    if len(running) >= IN_FLIGHT:
+                        break
+                    key = waiting.popleft()
+                    if not self._free(key):
+                        if key not in self._found:
+                            waiting.append(key)
+                        continue
+                    point = self._left[key]
+                    running[pool.submit(solve_point, self._scene_of, point, self._options)] = key
+                if not running:
+                    time.sleep(0.2)  # other processes compute what is left
+                    continue
+                for done in wait(running, timeout=1.0, return_when=FIRST_COMPLETED).done:
+                    key = running[done]
+                    if not self._finish(key, done):
+                        waiting.append(key)
+                    del running[done]
+                self._report(len(self._found))
+        finally:
+            for key in running.values():
+                self._release(key)
+
+    def _free(self, key: str) -> bool:
+        """Claim a point, unless another process has it or has finished it."""
+        if self._store is None:
+            return True
+        if not self._store.claim(key):
+            return False
+        kept = self._store.read(key)
+        if kept is not None:
+            self._found[key] = kept
+            self._store.release(key)
+        return kept is None
+
+    def _release(self, key: str) -> None:
+        if self._store is not None:
+            self._store.release(key)
+
+    def _finish(self, key: str, done: Future[Record]) -> bool:
+        """Keep the record of a call; False if the point is to be tried again."""
+        point = self._left[key]
+        try:
+            record = done.result()
+        except BrokenExecutor:
+            raise
+        except WorkerStartError as error:
+            raise SceneError(
+                f"executor: {error}; call sweep under ``if __name__ == '__main__':``, or give "
+                "executor=ThreadPoolExecutor()"
+            ) from error
+        except Exception as error:
+            self._tries[key] += 1
+            reason = f"{type(error).__name__}: {error}"
+            log.warning("%s: %s (try %d of %d)", point, reason, self._tries[key], TRIES)
+            if self._tries[key] < TRIES:
+                self._release(key)
+                return False
+            record = {"parameters": point, "question": _question(self._options), "error": reason}
+        if self._store is not None:
+            self._store.write(key, record)
+        self._found[key] = record
+        self.computed.add(key)
+        return True
+
+
+def solve_point(
+    scene_of: Callable[..., Scene], point: dict[str, Any], options: SolverOptions
+) -> Record:
+    """One point, in a worker: its result, or why there is none."""
+    record: Record = {"parameters": point, "question": _question(options)}
+    try:
+        scene = scene_of(**point)
+        record["scene"] = _fingerprint(scene)
+        record["result"] = result(solve(scene, options, on_fail="return"))
+    except (SceneError, GeometryError) as error:
+        record["error"] = f"{type(error).__name__}: {error}"
+    return record
+
+
+def _status(record: Record) -> str:
+    return str(record["result"]["status"]) if "result" in record else "no result"
+
+
+def _row(record: Record) -> dict[str, Any]:
+    found = record.get("result", {})
+    row = {**record["parameters"], "status": _status(record), "error": record.get("error", "")}
+    return row | found.get("measures", {})
+
+
+def _number(value: Any) -> float:
+    plain = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return float(value) if plain else np.nan

@@ -1,0 +1,71 @@
+"""Scenes for sweeps, importable by worker processes; some of them misbehave on purpose."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+
+import iga_membrane as iga
+
+VOLUME = 4.0 * np.pi / 3.0
+
+
+def drop(angle, bond=1.0):
+    return iga.sessile_droplet(
+        iga.Plane(contact_angle=angle),
+        volume=VOLUME,
+        gravity=bond,
+        discretization=iga.Discretization(elements=8),
+    )
+
+
+class Counting:
+    """Notes every scene that is built for a solve, one line per call, in a file."""
+
+    def __init__(self, file, pause=0.0):
+        self.file, self.pause = str(file), pause
+
+    def __call__(self, angle, bond=1.0):
+        with open(self.file, "a") as file:
+            file.write(f"{angle:g} {bond:g}\n")
+        time.sleep(self.pause)
+        return drop(angle, bond)
+
+
+class Deadly:
+    """Kills its worker at some angles: always, or only the first time."""
+
+    def __init__(self, deadly, folder=None):
+        self.deadly, self.folder = tuple(deadly), folder and str(folder)
+
+    def __call__(self, angle):
+        if angle in self.deadly:
+            mark = Path(self.folder or "") / f"{angle:g}"
+            if self.folder is None or not mark.exists():
+                if self.folder:
+                    mark.touch()
+                os.kill(os.getpid(), signal.SIGKILL)
+        return drop(angle)
+
+
+def hanging(angle):
+    if angle == 100.0:
+        time.sleep(1000.0)
+    return drop(angle)
+
+
+def threads(angle):
+    assert os.environ["OMP_NUM_THREADS"] == "1"
+    return drop(angle)
+
+
+if __name__ == "__main__":
+    import sys
+
+    where, pause = sys.argv[1], float(sys.argv[2])
+    scene_of = Counting(Path(where).with_suffix(".log"), pause)
+    angles = [30.0 + 4.0 * k for k in range(int(sys.argv[3]))]
+    found = iga.sweep(scene_of, {"angle": angles}, out=where, workers=int(sys.argv[4]))
+    print(len(found.records), found.computed, found.success)

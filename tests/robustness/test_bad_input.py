@@ -1,0 +1,296 @@
+"""Every public field with a wrong type, a value out of range and one that is not finite; wrong
+objects in Python; paths, options and nets (I3, I4, I7, I9-I11, I14-I18, X5, X7)."""
+
+import contextlib
+import copy
+import json
+import time
+
+import numpy as np
+import pytest
+from helpers import droplet
+
+import iga_membrane as iga
+from iga_membrane.scenes.scene_keys import _LIMITS, KEYS
+
+DROPLET = """
+scene = "sessile_droplet"
+[liquid]
+surface_tension = 1.0
+density = 1.0
+volume = 4.1887902047863905
+[gravity]
+acceleration = 1.0
+direction = [0, 0, -1]
+[substrate]
+kind = "sphere_lattice"
+contact_angle = 180.0
+radius = 0.4
+spacing = 1.2
+arrangement = "square"
+offset = [0.0, 0.0]
+base = -0.8
+[droplet]
+hold = "none"
+[discretization]
+space = "bspline"
+degree = 2
+elements = 8
+model = "eighth"
+[solver]
+motion = "spines"
+contact = "penalty"
+penalty = 1.0e4
+penetration_tolerance = 1.0e-2
+start = "flat"
+max_cpu_s = 60.0
+"""
+SHEET = """
+scene = "liquid_sheet"
+[liquid]
+surface_tension = 1.0
+[[particle]]
+radius = 1.0
+center = [0.0, 0.0, -1.0]
+density = 1.0
+contact_angle = 90.0
+motion = "fixed"
+[sheet]
+boundary = "circle"
+size = 5.0
+pressure = 0.1
+liquid_weight = false
+[[path]]
+parameter = "sheet.pressure"
+values = [0.1, 0.2]
+"""
+
+
+def tables(text):
+    import tomllib
+
+    return tomllib.loads(text)
+
+
+def with_value(data, table, key, value):
+    changed = copy.deepcopy(data)
+    place = changed.setdefault(table, [{}] if table in ("particle", "path") else {})
+    (place[0] if isinstance(place, list) else place)[key] = value
+    return changed
+
+
+def refused(data, name):
+    before = time.process_time()
+    with pytest.raises(iga.SceneError) as caught:
+        iga.read_scene(data)
+    assert time.process_time() - before < 0.5
+    said = str(caught.value)
+    assert name in said or "does not belong" in said
+
+
+FIELDS = [(table, key) for table in KEYS if table for key in KEYS[table]]
+TEXTS = ("kind", "arrangement", "motion", "hold", "boundary", "shape", "space", "model",
+         "contact", "contact_line", "start", "parameter")  # fmt: skip
+
+
+def scene_with(table):
+    return tables(SHEET if table in ("particle", "sheet", "path") else DROPLET)
+
+
+@pytest.mark.parametrize(("table", "key"), FIELDS)
+def test_every_field_refuses_a_wrong_type(table, key):
+    wrong = {} if key in TEXTS or key in ("values", "liquid_weight") else "1"
+    for value in (wrong, {"a": 1}, None, [[[]]]):
+        refused(with_value(scene_with(table), table, key, value), key)
+
+
+@pytest.mark.parametrize(("table", "key"), FIELDS)
+def test_every_field_refuses_what_is_not_finite(table, key):
+    for value in (float("nan"), float("inf"), -float("inf"), 1e999):
+        refused(with_value(scene_with(table), table, key, value), key)
+
+
+OUT = {
+    "degree": (0, 1, 5),
+    "elements": (0, 2, 4097),
+    "spacing": (0.0, 0.79),
+    "base": (0.1,),
+    "penalty": (0.0, -1.0),
+    "stabilization": (0.0, -1.0),
+    "penetration_tolerance": (0.0, -1e-2),
+    "max_cpu_s": (0.0, -1.0),
+    "max_memory_gb": (0.0,),
+    "direction": ([0, 0, 0], [1, 2], []),
+    "center": ([0, 0], [9.0, 0, -1]),
+    "centers": ([], [[0, 0]]),
+    "offset": ([0],),
+    "values": ([], [1.0], [1.0, 1.0], [0.1] * 10_001),
+    "liquid_weight": ("yes",),
+    "parameter": ("sheet", "sheet.pressur"),
+} | {key: ("no such word",) for key in TEXTS if key != "parameter"}
+
+
+def below(limits):
+    least = limits.get("above", limits.get("least", 0.0))
+    values = [least - 1.0] + ([least] if "above" in limits else [])
+    return values + ([1.01 * limits["most"]] if "most" in limits else [])
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [(t, k) for t, k in FIELDS if k not in ("pressure",) and (k in OUT or k in _LIMITS)],
+)
+def test_every_field_refuses_what_is_out_of_range(table, key):
+    if (table, key) in (("sheet", "volume"),):
+        pytest.skip("the volume of a sheet has a sign")
+    for value in OUT.get(key) or below(_LIMITS[key]):
+        refused(with_value(scene_with(table), table, key, value), key)
+
+
+def test_every_field_has_a_range_or_any_finite_number_is_right():
+    free = {(t, k) for t, k in FIELDS if k not in OUT and k not in _LIMITS}
+    assert free == {("sheet", "pressure"), ("cell", "pressure"), ("rings", "pressure")}
+
+
+PLANE = iga.Plane(contact_angle=90)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: iga.sessile_droplet("plane", volume=1.0), "substrate = 'plane'"),
+        (lambda: iga.sessile_droplet(PLANE, volume=1.0, liquid="water"), "liquid = 'water'"),
+        (lambda: iga.sessile_droplet(PLANE, volume=1.0, discretization=8), "discretization = 8"),
+        (lambda: iga.sessile_droplet(PLANE, volume=1.0, gravity=[0, 1]), "three numbers"),
+        (lambda: iga.sessile_droplet(PLANE, volume=1.0, gravity="g"), "gravity"),
+        (lambda: iga.sessile_droplet(PLANE, volume="1 uL"), "liquid.volume = '1 uL'"),
+        (lambda: iga.liquid_sheet(3.0, size=5.0), "particle = 3.0"),
+        (lambda: iga.liquid_sheet(size=5.0, liquid_weight=1), "liquid_weight = 1"),
+        (lambda: iga.liquid_sheet(size=2.0, pressure=1.0, volume=1.0), "pressure, sheet.volume"),
+        (lambda: iga.film_between_rings(half_height=0.5, pressure=1.0, volume=1.0),
+         "rings.volume, rings.pressure"),
+        (lambda: iga.asperity_cell(PLANE, size=1.0, pressure=1.0), "sphere = Plane"),
+        (lambda: iga.solve(5), "scene = 5"),
+        (lambda: iga.solve(droplet(90), {"tolerance": 1}), "options = {"),
+        (lambda: iga.solve(droplet(90), on_fail="ignore"), "on_fail = 'ignore'"),
+        (lambda: iga.load_scene(5), "path = 5"),
+        (lambda: iga.load(5), "path = 5"),
+        (lambda: iga.trace(droplet, 5), "values = 5"),
+        (lambda: iga.trace(droplet, []), "two or more"),
+        (lambda: iga.trace(droplet, [90, 120, 120]), "values[2] = 120.0: the same as"),
+        (lambda: iga.trace(droplet, [90, "120"]), "values[1]"),
+        (lambda: iga.trace(droplet, np.arange(1e7)), "10000000 numbers"),
+        (lambda: iga.trace(droplet, [90, 120], on_fail="x"), "on_fail = 'x'"),
+        (lambda: iga.Spheres(180, [], 1.0), "at least one sphere"),
+        (lambda: iga.Spheres(180, 5, 1.0), "substrate.centers = 5"),
+        (lambda: iga.Spheres(180, [[0, 0, 0]], "x"), "substrate.radii = 'x'"),
+        (lambda: iga.Spheres(180, [[0, 0, 0]], [0.0]), "substrate.radii[0] = 0.0"),
+        (lambda: iga.Spheres(180, [[0, 0, np.nan]], 1.0), "substrate.centers[0][2] = nan"),
+        (lambda: iga.Spheres(180, np.array([[0, 0, np.inf]]), 1.0), "substrate.centers[0][2]"),
+        (lambda: iga.Spheres([180, 90], [[0, 0, 0]], 1.0), "substrate.contact_angle"),
+        (lambda: iga.SphereLattice(180, 0.05, 0.09), "spacing must be >= 0.1"),
+        (lambda: iga.SolverOptions(tolerance=0), "solver.tolerance = 0.0"),
+        (lambda: iga.SolverOptions(tolerance=-1), "solver.tolerance = -1.0"),
+        (lambda: iga.SolverOptions(tolerance=9e-15), ">= 1e-14"),
+        (lambda: iga.SolverOptions(max_iterations=0), "solver.max_iterations = 0"),
+        (lambda: iga.SolverOptions(max_cpu_s=0), "solver.max_cpu_s = 0.0"),
+        (lambda: iga.SolverOptions(audit="no"), "solver.audit = 'no'"),
+        (lambda: iga.tensor_space(*cap_bases(), np.zeros((9, 3))), "weights[0, 0] = 0.0"),
+        (lambda: iga.tensor_space(*cap_bases(), -np.ones((9, 3))), "weights[0, 0] = -1.0"),
+        (lambda: iga.tensor_space(*cap_bases(), np.ones((3, 9))), "shape (3, 9) given"),
+    ],
+)  # fmt: skip
+def test_wrong_objects_and_values_in_python_are_named(make, said):
+    before = time.process_time()
+    with pytest.raises(iga.SceneError) as caught:
+        make()
+    assert said in str(caught.value)
+    assert time.process_time() - before < 1.5
+
+
+def cap_bases():
+    return iga.cap(1.0, 60.0).space.bases
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda p: p.T,
+        lambda p: p.astype(object),
+        lambda p: p.astype(complex),
+        lambda p: p.astype(str),
+        lambda p: p.astype(int),
+        lambda p: p[:-1],
+        lambda p: p * np.nan,
+    ],
+)
+def test_a_wrong_control_net_is_refused_with_what_was_expected(change):
+    surface = iga.cap(1.0, 60.0)
+    with pytest.raises(iga.GeometryError, match=r"expected|not finite"):
+        surface.moved(change(surface.points))
+
+
+def test_single_precision_is_taken_with_a_notice():
+    surface = iga.cap(1.0, 60.0)
+    with pytest.warns(UserWarning, match="float32 given"):
+        raised = surface.moved(surface.points.astype(np.float32))
+    assert raised.points.dtype == float
+
+
+def test_a_far_asperity_and_many_are_no_burden():
+    """I17: an asperity 1e6 R away; a hundred thousand in a list; the limit is stated."""
+    near = [[0.0, 0.0, -0.5]]
+    far = [*near, [1e6, 0.0, -0.5]]
+    mesh = iga.Discretization(elements=8, degree=2, model="quarter")
+    one, two = (
+        iga.solve(
+            iga.sessile_droplet(
+                iga.Spheres(180, centers, 0.5, base=-3.0), volume=0.5, discretization=mesh
+            ),
+            on_fail="return",
+        )
+        for centers in (near, far)
+    )
+    assert one.status is two.status
+    assert one.measures["energy"] == pytest.approx(two.measures["energy"], rel=1e-9)
+    many = np.zeros((100_000, 3))
+    many[:, 0] = 3.0 * np.arange(100_000)
+    before = time.process_time()
+    spheres = iga.Spheres(180, many, 1.0)
+    assert spheres.nearest(np.array([[2.9e5, 0.0, 2.0]])).gap == pytest.approx(
+        np.hypot(1.0, 2.0) - 1.0
+    )
+    assert time.process_time() - before < 2.0
+    with pytest.raises(iga.SceneError, match="at most 1000000"):
+        iga.Spheres(180, np.zeros((1_000_001, 3)), 1.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", [DROPLET, SHEET], ids=["droplet", "sheet"])
+@pytest.mark.parametrize("ending", ["toml", "json"])
+def test_mutated_scene_files_give_typed_errors_or_scenes_and_quickly(tmp_path, text, ending):
+    """X7, with the state files of test_state_files: bytes changed, cut out and put in."""
+    original = text if ending == "toml" else json.dumps(tables(text))
+    rng = np.random.default_rng(3)
+    path = tmp_path / f"scene.{ending}"
+    read = 0
+    for _ in range(500):
+        data = bytearray(original.encode())
+        for _ in range(rng.integers(1, 4)):
+            start = int(rng.integers(len(data)))
+            end = start + int(rng.integers(1, 8))
+            match int(rng.integers(4)):
+                case 0:
+                    data[start:end] = rng.bytes(end - start)
+                case 1:
+                    del data[start:end]
+                case 2:
+                    data[start : start + 1] = b"0123456789-.e"[rng.integers(13)].to_bytes()
+                case 3:
+                    data[start:start] = data[: end - start]
+        path.write_bytes(data)
+        before = time.process_time()
+        with contextlib.suppress(iga.SceneError, iga.GeometryError):
+            read += isinstance(iga.load_scene(path).scene, iga.Scene)
+        assert time.process_time() - before < 1.0, data
+    assert read

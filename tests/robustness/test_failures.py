@@ -1,0 +1,301 @@
+"""What a failed solve hands over, and faults put into a solve on purpose (status contract; N1-N4,
+N7, N8, N13, S9)."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from helpers import droplet, particle_sheet, pinned_cap
+
+import iga_membrane as iga
+from iga_membrane.cli import main
+from iga_membrane.solver import newton as newton_module
+from iga_membrane.solver import solve as solve_module
+from iga_membrane.solver.assembly import Assembly
+from iga_membrane.solver.result_file import result
+from iga_membrane.solver.status import REMEDY
+
+HARD = {
+    "drop": lambda: droplet(30, 100.0, elements=8),
+    "contact area": lambda: droplet(180, 100.0, elements=8),
+    "sheet": lambda: particle_sheet(15, elements=6, center=(0, 0, -0.3), gravity=0.1),
+}
+
+
+def finite(value):
+    if isinstance(value, dict):
+        return all(finite(item) for item in value.values())
+    if isinstance(value, (list, tuple)):
+        return all(finite(item) for item in value)
+    return not isinstance(value, float) or np.isfinite(value)
+
+
+def check_contract(solution):
+    """Everything that a failure owes: section 0 of the bar."""
+    assert not solution.success
+    assert np.isfinite(solution.surface.points).all()
+    assert finite(dict(solution.measures))
+    assert finite(json.loads(json.dumps(result(solution))))
+    assert len(solution.message) > 20
+    residuals = [step.residual for step in solution.iterations]
+    assert residuals
+    assert np.isfinite(residuals).all()
+    assert all(np.isfinite([step.step, step.taken]).all() for step in solution.iterations)
+    assert solution.load_steps
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_a_solve_cut_short_returns_its_best_state(name, monkeypatch):
+    """N1: two iterations are too few; nothing else may help."""
+    options = iga.SolverOptions(max_iterations=2)
+    with pytest.raises(iga.SolveError, match="max_iterations") as caught:
+        iga.solve(HARD[name](), options)
+    solution = caught.value.solution
+    assert solution.status is iga.Status.MAX_ITER
+    check_contract(solution)
+    residuals = [step.residual for step in solution.iterations]
+    assert min(residuals) <= residuals[0]
+    assert solution.volume_error is None or np.isfinite(solution.volume_error)
+    assert solution.lambda_min is not None
+    assert solution.audit is not None
+
+
+def test_a_failed_droplet_says_how_far_it_came(tmp_path):
+    options = iga.SolverOptions(max_iterations=2)
+    solution = iga.solve(droplet(150, 20.0, elements=8), options, on_fail="return")
+    record = result(solution)
+    assert record["success"] is False
+    assert record["volume_error"] == pytest.approx(solution.audit.volume)
+    assert record["contact"]["max_penetration"] is not None
+    assert len(record["contact"]["deepest_point"]) == 3
+    assert record["iterations"][0]["residual"] > 0
+    assert record["last_good_load"] is None
+    assert record["index"] is not None
+    solution.save(tmp_path / "failed.npz")
+    assert iga.load(tmp_path / "failed.npz").status is iga.Status.MAX_ITER
+
+
+def test_the_last_good_load_of_a_path_is_named():
+    path = iga.trace(
+        lambda p: iga.liquid_sheet(
+            size=2.0, boundary="circle", pressure=p, discretization=iga.Discretization(elements=6)
+        ),
+        [0.0, 1.0, 2.2],
+        parameter="sheet.pressure",
+        on_fail="return",
+    )
+    good = path.end.last_good_load
+    assert good.status is None
+    assert good.value == pytest.approx(path.bracket.lo)
+    assert 1.99 < good.value < 2.0 + 1e-3
+
+
+def test_every_status_of_an_iteration_has_a_remedy():
+    raised = {"STALLED", "MAX_ITER", "LINEAR_SOLVE_FAILED", "NONFINITE", "INTERRUPTED"}
+    assert {status.name for status in REMEDY} == raised
+
+
+@pytest.mark.parametrize("when", [1, 2, 3, 5])
+@pytest.mark.parametrize("how", ["nan", "inf"])
+def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, when, how):
+    """N2: the forces of one iteration are not finite."""
+    calls = []
+    original = Assembly.system
+
+    def broken(self, *arguments):
+        system = original(self, *arguments)
+        calls.append(1)
+        if len(calls) == when:
+            system.gradient[0] = float(how)
+        return system
+
+    monkeypatch.setattr(Assembly, "system", broken)
+    scene = droplet(120, 1.0, elements=8)
+    solution = iga.solve(scene, on_fail="return")
+    assert np.isfinite(solution.surface.points).all()
+    assert finite(dict(solution.measures))
+    if not solution.success:
+        assert solution.status is iga.Status.NONFINITE
+    else:
+        monkeypatch.undo()
+        clean = iga.solve(scene)
+        assert solution.measures["energy"] == pytest.approx(clean.measures["energy"], rel=1e-8)
+
+
+@pytest.mark.parametrize("when", [1, 2, 3, 6])
+def test_an_energy_that_is_not_finite_is_no_obstacle(monkeypatch, when):
+    """N2: a trial step is cut, or load stepping goes round; the answer is the same."""
+    clean = iga.solve(droplet(120, 1.0, elements=8))
+    calls = []
+    original = Assembly.energies
+
+    def broken(self, surface):
+        found = original(self, surface)
+        calls.append(1)
+        if len(calls) == when:
+            object.__setattr__(found, "total", float("nan"))
+        return found
+
+    monkeypatch.setattr(Assembly, "energies", broken)
+    solution = iga.solve(droplet(120, 1.0, elements=8))
+    assert solution.measures["energy"] == pytest.approx(clean.measures["energy"], rel=1e-8)
+
+
+def test_a_rigid_motion_that_nothing_holds_takes_no_long_step():
+    """N3: a drop on a plane without a held centroid is free to slide."""
+    scene = droplet(120, model="full", elements=8)
+    terms = [t for t in scene.terms if not isinstance(t, iga.Centroid)]
+    free = iga.Scene(scene.surface, terms, [iga.Sliding()], kind="sessile_droplet")
+    solution = iga.solve(free, on_fail="return")
+    assert not solution.success
+    assert "slide along x, y" in solution.message or solution.status is not None
+    start = free.local_surface().points
+    moved = free.units.to_local(solution.surface.points) - start
+    assert np.abs(moved).max() <= 1.0
+
+
+def test_a_start_on_a_saddle_is_not_a_success():
+    """N4: the large cap under pressure balances, but every touch makes it grow or shrink."""
+    opening = np.radians(115.0)
+    terms = [iga.SurfaceTension(1.0), iga.Pressure(2.0 * np.sin(opening))]
+    solution = iga.solve(pinned_cap(opening, terms, "eighth", elements=12), on_fail="return")
+    assert solution.status is iga.Status.CONVERGED_SADDLE
+    assert solution.lambda_min <= -1e-6
+
+
+def test_contact_that_flips_at_every_step_ends(monkeypatch):
+    """N7: half of the contact points are let go and taken back in turn."""
+    from iga_membrane.solver.contact import ContactSet
+
+    original, turn = ContactSet.touch, []
+
+    def flipping(self, points):
+        touch = original(self, points)
+        turn.append(1)
+        touch.traction[len(turn) % 2 :: 2] *= 1.0 + 0.5 * (-1) ** len(turn)
+        return touch
+
+    monkeypatch.setattr(ContactSet, "touch", flipping)
+    options = iga.SolverOptions(max_iterations=20, max_cpu_s=20.0)
+    mesh = iga.Discretization(elements=8, degree=2, model="eighth")
+    lattice = iga.SphereLattice(180, 0.5, 1.5)
+    scene = iga.sessile_droplet(lattice, volume=4.19, gravity=0.5, discretization=mesh)
+    solution = iga.solve(scene, options, on_fail="return")
+    assert not solution.success
+    check_contract(solution)
+
+
+@pytest.mark.parametrize("part", [0.01, -0.01])
+def test_a_hessian_wrong_by_a_percent_costs_the_order_but_not_the_answer(monkeypatch, part):
+    """N8: convergence becomes linear, which the history shows; the answer stays."""
+    clean = iga.solve(droplet(120, 1.0, elements=8))
+    original = Assembly.system
+
+    def skewed(self, *arguments):
+        system = original(self, *arguments)
+        system.matrix.dense()[: self.size // 2, : self.size // 2] *= 1.0 + part
+        return system
+
+    monkeypatch.setattr(Assembly, "system", skewed)
+    solution = iga.solve(droplet(120, 1.0, elements=8), on_fail="return")
+    steps = np.array([step.step for step in solution.iterations if step.taken == 1.0])
+    order = np.log(steps[2:] / steps[1:-1]) / np.log(steps[1:-1] / steps[:-2])
+    assert order[-1] < 1.5
+    assert solution.measures["energy"] == pytest.approx(clean.measures["energy"], rel=1e-8)
+
+
+def test_the_cpu_limit_is_kept():
+    """N13: at most a fifth beyond, and the best state comes back."""
+    scene = droplet(178, 200.0, elements=40, degree=4, model="half")
+    iga.solve(scene, iga.SolverOptions(max_cpu_s=0.1), on_fail="return")  # compiled
+    started = time.process_time()
+    solution = iga.solve(scene, iga.SolverOptions(max_cpu_s=0.5), on_fail="return")
+    spent = time.process_time() - started
+    assert solution.status is iga.Status.INTERRUPTED
+    check_contract(solution)
+    assert "max_cpu_s" in solution.message
+    assert solution.volume_error is not None
+    assert spent <= 1.2 * 0.5 + 0.5  # and what the parts of a result cost
+
+
+def test_too_little_memory_is_named(monkeypatch):
+    with pytest.raises(iga.SceneError, match="max_memory_gb"):
+        iga.solve(droplet(120, elements=100), iga.SolverOptions(max_memory_gb=1e-4))
+
+    def full(*arguments, **options):
+        raise MemoryError
+
+    monkeypatch.setattr(newton_module, "Bordered", full)
+    solution = iga.solve(droplet(120, elements=8), on_fail="return")
+    assert solution.status is iga.Status.LINEAR_SOLVE_FAILED
+    assert "memory" in solution.message
+    monkeypatch.undo()
+    monkeypatch.setattr(solve_module, "Assembly", full)
+    with pytest.raises(iga.SceneError, match="fit into memory"):
+        iga.solve(droplet(120, elements=8))
+
+
+SCENE = """
+scene = "sessile_droplet"
+[liquid]
+volume = 4.1887902047863905
+[substrate]
+contact_angle = 120.0
+[discretization]
+elements = 8
+"""
+
+
+def test_the_command_line_names_a_lack_of_memory(tmp_path, monkeypatch, capsys):
+    def full(*arguments, **options):
+        raise MemoryError
+
+    monkeypatch.setattr("iga_membrane.cli.solve", full)
+    (tmp_path / "scene.toml").write_text(SCENE)
+    code = main(["solve", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")])
+    assert code == 3
+    assert "out of memory" in capsys.readouterr().err
+
+
+SLOW = """
+scene = "sessile_droplet"
+[liquid]
+volume = 4.1887902047863905
+[gravity]
+acceleration = 1.0
+[substrate]
+contact_angle = 90.0
+[discretization]
+elements = 40
+model = "half"
+[[path]]
+parameter = "substrate.contact_angle"
+values = [90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 170.0]
+"""
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.35])
+def test_one_interrupt_is_enough_and_leaves_valid_files(tmp_path, delay):
+    """S9: Ctrl-C while iterating, factorizing or writing."""
+    scene, out = tmp_path / "scene.toml", tmp_path / "out"
+    scene.write_text(SLOW)
+    command = [sys.executable, "-m", "iga_membrane", "solve", str(scene), "--out", str(out)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    deadline = time.monotonic() + 60
+    while not (out / "state.npz").exists():
+        assert process.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    time.sleep(delay)
+    process.send_signal(signal.SIGINT)
+    asked = time.monotonic()
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert time.monotonic() - asked < 5.0
+    assert "interrupted" in said.decode()
+    with pytest.raises(iga.StateError, match="no solution yet"):
+        iga.load(out / "state.npz")

@@ -1,0 +1,196 @@
+"""Invariants and limits that no other file holds (N10, N12, P11, P14, L4, Q17, Q20), and the
+randomized extremes (Z)."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from helpers import droplet, worst
+from robustness.extreme_scenes import KINDS, extreme_scenes, score
+
+import iga_membrane as iga
+from iga_membrane.analysis.sweep import solve_point
+from iga_membrane.reference import drop_on_plane
+from iga_membrane.splines import points_of
+
+UNIT = iga.Plane(contact_angle=90)
+
+
+@pytest.mark.parametrize("bond", [0.0, 1.0, 20.0])
+def test_the_wet_area_falls_with_the_contact_angle(bond):
+    """Q17"""
+    angles = np.linspace(20, 170, 12)
+    wet = [iga.solve(droplet(a, bond, elements=10)).measures["A_wet"] for a in angles]
+    assert (np.diff(wet) < 0).all()
+
+
+def test_contact_forces_only_push():
+    """Q17: every asperity is pressed, never pulled."""
+    lattice = iga.SphereLattice(180.0, 0.25, 0.7)
+    mesh = iga.Discretization(elements=40)
+    solution = iga.solve(
+        iga.sessile_droplet(lattice, volume=4.19, gravity=1.0, discretization=mesh)
+    )
+    rows = solution.contact["asperities"]
+    assert rows
+    assert all(row["force"] > 0 for row in rows)
+    assert all(row["force_vector"][2] < 0 for row in rows)
+
+
+@pytest.mark.parametrize("angle", [30, 120, 170])
+def test_accepted_steps_never_raise_the_energy(angle, monkeypatch):
+    """Q17: the merit function falls with every step; at fixed volume it is the energy."""
+    from iga_membrane.solver import newton as module
+
+    search, begin, after = module._search, [], []
+
+    def watched(assembly, system, surface, displacement, direction, longest):
+        part, moved = search(assembly, system, surface, displacement, direction, longest)
+        if moved is not None:
+            for where, state in ((begin, surface), (after, moved)):
+                found = assembly.energies(state)
+                where.append(found.total - direction.multipliers @ found.constraints)
+        return part, moved
+
+    monkeypatch.setattr(module, "_search", watched)
+    solution = iga.solve(droplet(angle, 2.0, elements=10))
+    assert solution.success
+    assert len(begin) >= 3
+    # the missing volume counts too (kappa), so the energy may rise while it is filled
+    missing = np.array(begin) - np.array(after)
+    assert (missing[-2:] >= -1e-11).all()
+
+
+CODE = """
+import iga_membrane as iga
+from helpers import droplet
+solution = iga.solve(droplet(130, 3.0, elements=10))
+print([value.hex() for value in solution.measures.values()])
+print(solution.surface.points.tobytes().hex())
+"""
+
+
+def test_a_fresh_process_with_another_hash_seed_gives_the_same_bits():
+    """Q20"""
+    found = set()
+    for seed in ("0", "1", "12345"):
+        path = os.pathsep.join([*sys.path])
+        environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": path}
+        run = subprocess.run(
+            [sys.executable, "-c", CODE], capture_output=True, text=True, check=True,
+            env=environment | {"OMP_NUM_THREADS": "1"},
+        )  # fmt: skip
+        found.add(run.stdout)
+    assert len(found) == 1
+
+
+def test_without_compiled_loops_the_answer_is_the_same(monkeypatch):
+    """N12"""
+    scene = droplet(120, 1.0, elements=24, model="full")
+    compiled = iga.solve(scene)
+    monkeypatch.setenv("IGA_MEMBRANE_NO_NUMBA", "1")
+    plain = iga.solve(scene)
+    for name, value in compiled.measures.items():
+        assert plain.measures[name] == pytest.approx(value, rel=1e-10), name
+    assert plain.newton_iterations == compiled.newton_iterations
+
+
+def test_the_finest_tolerance_stops_at_the_floor_of_rounding():
+    """N10"""
+    solution = iga.solve(droplet(150, 1.0, elements=30), iga.SolverOptions(tolerance=1e-14))
+    assert solution.success
+    assert solution.newton_iterations <= 15
+    exact = drop_on_plane(1.0, 150.0)
+    assert worst(solution.measures, exact, ("energy", "p_base")) <= 1e-11
+
+
+@pytest.mark.parametrize("fold", ["swapped", "mirrored", "collapsed"])
+def test_a_folded_start_is_mended_or_named(fold):
+    """P11"""
+    start = iga.sessile_droplet(UNIT, volume=1.0).surface
+    net = start.net.copy()
+    if fold == "swapped":
+        net[:, [3, 9]] = net[:, [9, 3]]
+    elif fold == "mirrored":
+        net[..., :2] *= -1.0
+        net = net[::-1]
+    else:
+        net[:, 2:6] = net[:, 2:3]
+    try:
+        scene = iga.sessile_droplet(
+            UNIT, volume=1.0, start=start.moved(points_of(start.space, net))
+        )
+        solution = iga.solve(scene, on_fail="return")
+    except (iga.SceneError, iga.GeometryError):
+        return
+    clean = iga.solve(iga.sessile_droplet(UNIT, volume=1.0))
+    assert np.isfinite(solution.surface.points).all()
+    if solution.success:
+        assert solution.measures["energy"] == pytest.approx(clean.measures["energy"], rel=1e-6)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-12, -1e-12])
+def test_the_gap_is_continuous_between_spheres_that_touch(apart):
+    """P14"""
+    spheres = iga.Spheres(180, [[-1.0, 0, 0], [1.0 + apart, 0, 0]], 1.0)
+    height = np.linspace(0.0, 2.0, 21)
+    for side in (0.0, 1e-12, -1e-12):
+        middle = np.column_stack([np.full(21, 0.5 * apart + side), np.zeros(21), height])
+        found = spheres.nearest(middle)
+        exact = np.hypot(1.0, height) - 1.0
+        assert found.gap == pytest.approx(exact, abs=1e-9)
+        assert np.isfinite(found.normal).all()
+        assert np.linalg.norm(found.normal, axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("held_by", "limit"),
+    [("pressure", 0.5 * np.pi), ("volume", np.pi)],
+)
+def test_a_cylinder_loses_stability_at_its_length(held_by, limit):
+    """L4: Plateau-Rayleigh with pinned ends, L = pi R at fixed pressure, 2 pi R at fixed volume."""
+    smallest = []
+    for part in (0.999, 1.001):
+        height = part * limit
+        value = 1.0 if held_by == "pressure" else 2.0 * np.pi * height
+        scene = iga.film_between_rings(half_height=height, **{held_by: value})
+        solution = iga.solve(scene, on_fail="return")
+        assert solution.measures["neck_radius"] == pytest.approx(1.0, abs=1e-6)
+        assert solution.success is (part < 1.0), solution.message
+        smallest.append(solution.lambda_min)
+    assert smallest[0] > 0 > smallest[1]
+
+
+def outcomes(seed, count, kinds):
+    for extreme in extreme_scenes(seed, count):
+        if extreme.kind in kinds:
+            options = iga.SolverOptions(max_cpu_s=120.0)
+            record = solve_point(lambda e=extreme: e.scene(), {}, options)
+            yield extreme, record, *score(extreme, record)
+
+
+QUICK = [name for name in KINDS if name not in ("lattice", "penalty", "overload", "cell")]
+
+
+def test_extreme_scenes_are_solved_or_named():
+    """Z, a small sample; ``benchmarks/reliability.py`` runs three hundred."""
+    ends = [
+        (end, extreme.exists(), extreme, error)
+        for extreme, _, end, error in outcomes(20, 30, QUICK)
+    ]
+    assert not [row for row in ends if row[0] in ("wrong", "crashed")]
+    known = [end == "solved" for end, exists, *_ in ends if exists]
+    assert len(known) >= 15
+    assert np.mean(known) >= 0.95
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [21, 22])
+def test_hundreds_of_extreme_scenes_are_never_wrong_silently(seed):
+    ends = [(e.exists(), end, e, error) for e, _, end, error in outcomes(seed, 300, KINDS)]
+    assert len(ends) >= 300
+    assert not [row for row in ends if row[1] in ("wrong", "crashed")]
+    known = [end == "solved" for exists, end, *_ in ends if exists]
+    assert np.mean(known) >= 0.95

@@ -1,0 +1,521 @@
+"""State files: bitwise back, never half-written, never trusted when damaged or foreign (S2-S5,
+X1-X4, X7, X8), and load stepping that goes on where it was interrupted."""
+
+import ast
+import io
+import json
+import resource
+import signal
+import subprocess
+import sys
+import time
+import zipfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from helpers import droplet, particle_sheet, pinned_cap
+
+import iga_membrane as iga
+from iga_membrane import files
+from iga_membrane.cli import main
+from iga_membrane.records import digest
+from iga_membrane.terms import BodyDensity, BodyTerm
+
+PACKAGE = Path(iga.__file__).parent
+SOLVED = {
+    "plane": lambda: droplet(150, 1.0, elements=8),
+    "contact area": lambda: droplet(180, 1.0, elements=8),
+    "sphere": lambda: iga.sessile_droplet(
+        iga.Sphere(contact_angle=90, radius=1.0, center=(0, 0, -1)), volume=1.0
+    ),
+    "sheet": lambda: particle_sheet(90, center=(0.3, 0, -1), elements=6, gravity=0.1),
+    "from parts": lambda: pinned_cap(1.0, [iga.SurfaceTension(1.0), iga.Volume(0.8)], "half"),
+    "nurbs": lambda: droplet(60, space="nurbs", elements=8),
+    "saddle": lambda: droplet(120, 1.0, hold="none", model="full", elements=6),
+}
+
+
+@pytest.fixture(scope="module")
+def drop():
+    return iga.solve(droplet(120, 1.0, elements=8))
+
+
+@pytest.fixture(scope="module")
+def saved(drop, tmp_path_factory):
+    path = tmp_path_factory.mktemp("state") / "drop.npz"
+    drop.save(path)
+    return path
+
+
+@pytest.mark.parametrize("name", SOLVED)
+def test_a_solution_comes_back_bit_by_bit(name, tmp_path):
+    solution = iga.solve(SOLVED[name](), on_fail="return")
+    solution.save(tmp_path / "state.npz")
+    back = iga.load(tmp_path / "state.npz")
+    assert digest(back) == digest(solution)
+    assert np.array_equal(back.surface.points, solution.surface.points)
+    assert back.summary() == solution.summary()
+    assert back.measures == solution.measures
+    assert back.status is solution.status
+    points = solution.surface.points[:5]
+    assert np.array_equal(back.pressure(points), solution.pressure(points))
+    back.save(tmp_path / "again.npz")
+    assert (tmp_path / "again.npz").read_bytes() == (tmp_path / "state.npz").read_bytes()
+
+
+def test_a_failed_solution_comes_back_too(tmp_path):
+    gravity = [0.5, 0.0, -1.0]
+    scene = iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0, gravity=gravity)
+    solution = iga.solve(scene, on_fail="return")
+    solution.save(tmp_path / "state.npz")
+    assert iga.load(tmp_path / "state.npz").status is iga.Status.NO_EQUILIBRIUM
+
+
+def test_a_loaded_scene_refuses_to_call_functions_that_were_not_kept(saved):
+    scene = iga.load(saved).scene
+    with pytest.raises(iga.SceneError, match="build the scene anew"):
+        scene.ramp(0.5)
+
+
+@dataclass(frozen=True)
+class Field(BodyTerm):
+    pull: float
+    name = "field"
+
+    def density(self):
+        return BodyDensity(0.0, (0.0, 0.0, self.pull))
+
+    def scaled(self, scale):
+        return Field(self.pull * scale.length**2 / scale.tension)
+
+
+def test_a_term_of_ones_own_is_named_when_it_is_missing(tmp_path):
+    scene = droplet(120, elements=8)
+    scene = replace(scene, terms=[*scene.terms, Field(1.0)], ramp=None)
+    solution = iga.solve(scene)
+    solution.save(tmp_path / "own.npz")
+    with pytest.raises(iga.StateError, match="Field"):
+        iga.load(tmp_path / "own.npz")
+    assert digest(iga.load(tmp_path / "own.npz", also=[Field])) == digest(solution)
+
+
+# Damage
+
+
+def test_every_flipped_bit_is_noticed(saved, tmp_path):
+    data = saved.read_bytes()
+    rng = np.random.default_rng(5)
+    path = tmp_path / "flipped.npz"
+    for place in [*rng.integers(0, len(data), 180), *range(len(data) - 90, len(data), 4)]:
+        flipped = bytearray(data)
+        flipped[place] ^= 1 << int(rng.integers(8))
+        path.write_bytes(flipped)
+        with pytest.raises(iga.StateError, match=r"flipped\.npz"):
+            iga.load(path)
+
+
+@pytest.mark.parametrize("part", [0.0, 1e-4, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999])
+def test_every_truncation_is_noticed(saved, tmp_path, part):
+    path = tmp_path / "cut.npz"
+    data = saved.read_bytes()
+    path.write_bytes(data[: int(part * len(data))])
+    with pytest.raises(iga.StateError, match=r"cut\.npz: not a state file"):
+        iga.load(path)
+
+
+@pytest.mark.slow
+def test_mutated_files_are_only_refused_and_quickly(saved, tmp_path):
+    data = saved.read_bytes()
+    rng = np.random.default_rng(11)
+    path = tmp_path / "mutated.npz"
+    for _ in range(1000):
+        mutated = bytearray(data)
+        for _ in range(rng.integers(1, 6)):
+            start = int(rng.integers(len(mutated)))
+            end = start + int(rng.integers(1, 50))
+            match int(rng.integers(3)):
+                case 0:
+                    mutated[start:end] = rng.bytes(end - start)
+                case 1:
+                    del mutated[start:end]
+                case 2:
+                    mutated[start:start] = rng.bytes(end - start)
+        path.write_bytes(mutated)
+        before = time.process_time()
+        with pytest.raises(iga.StateError):
+            iga.load(path)
+        assert time.process_time() - before < 1.0
+
+
+def forged(path, header, arrays):
+    """A file with a right checksum, as only a malicious hand would write it."""
+    files.write_arrays(path, header, arrays)
+    return path
+
+
+@pytest.mark.parametrize(
+    "state",
+    [
+        None,
+        [],
+        {"record": "os.system", "fields": {"command": "true"}},
+        {"record": "subprocess.Popen", "fields": {"args": "true"}},
+        {"record": "cli.main", "fields": {}},
+        {"record": "solver.solution.Solution", "fields": {}},
+        {"record": "terms.tension.SurfaceTension", "fields": {"gamma": "1"}},
+        {"record": "files.write_whole", "fields": {}},
+        {"record": "records.__class__", "fields": {}},
+        {"enum": "solver.options.SolverOptions", "value": "x"},
+        {"enum": "solver.status.Status", "value": "FINE"},
+        {"array": "nowhere"},
+        {"map": [1]},
+        {"tuple": [{"tuple": [{"nothing": 1}]}]},
+    ],
+)
+def test_a_forged_state_builds_nothing(tmp_path, state):
+    with pytest.raises(iga.StateError, match=r"forged\.npz"):
+        iga.load(forged(tmp_path / "forged.npz", {"state": state}, {}))
+
+
+def rewrite(path, members):
+    """A zip of these members with a right checksum."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for (name, data), compression in members:
+            archive.writestr(name, data, compression)
+        archive.comment = b"iga_membrane state " + b"  1 " + b"0" * 64
+    import hashlib
+
+    body = buffer.getvalue()[:-64]
+    path.write_bytes(body + hashlib.sha256(body).hexdigest().encode())
+    return path
+
+
+def npy(array):
+    stream = io.BytesIO()
+    np.save(stream, array, allow_pickle=True)
+    return stream.getvalue()
+
+
+class Bomb:
+    def __init__(self, sentinel):
+        self.sentinel = sentinel
+
+    def __reduce__(self):
+        return (open, (str(self.sentinel), "w"))
+
+
+def test_an_object_array_is_refused_and_nothing_runs(tmp_path):
+    sentinel = tmp_path / "ran"
+    data = npy(np.array([Bomb(sentinel)], dtype=object))
+    sentinel.unlink(missing_ok=True)
+    path = rewrite(tmp_path / "bomb.npz", [(("header.npy", data), zipfile.ZIP_STORED)])
+    with pytest.raises(iga.StateError, match=r"bomb\.npz"):
+        iga.load(path)
+    np.savez(tmp_path / "plain.npz", header=np.array([Bomb(sentinel)], dtype=object))
+    sentinel.unlink(missing_ok=True)
+    with pytest.raises(iga.StateError, match=r"plain\.npz: not a state file"):
+        iga.load(tmp_path / "plain.npz")
+    assert not sentinel.exists()
+
+
+def huge_header(shape):
+    stream = io.BytesIO()
+    stream.write(np.lib.format.magic(1, 0))
+    np.lib.format.write_array_header_1_0(
+        stream, {"descr": "<f8", "fortran_order": False, "shape": shape}
+    )
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    "member",
+    [
+        (("header.npy", huge_header((10**12,))), zipfile.ZIP_STORED),
+        (("header.npy", huge_header((-1,))), zipfile.ZIP_STORED),
+        (("header.npy", npy(np.zeros(20_000_000, np.uint8))), zipfile.ZIP_DEFLATED),
+        (("header.npy", npy(np.frombuffer(b"[" * 100_000, np.uint8))), zipfile.ZIP_STORED),
+        (("header.npy", b"\x93NUMPY\x07\x00"), zipfile.ZIP_STORED),
+        (("other.npy", npy(np.zeros(2))), zipfile.ZIP_STORED),
+    ],
+    ids=["1e12 entries", "negative", "zip bomb", "deep json", "npy version", "no header"],
+)
+def test_files_that_claim_too_much_cost_neither_time_nor_memory(tmp_path, member):
+    path = rewrite(tmp_path / "huge.npz", [member])
+    before = time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(iga.StateError, match=r"huge\.npz"):
+        iga.load(path)
+    after = time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    assert after[0] - before[0] < 1.0
+    assert after[1] - before[1] < 100_000  # kilobytes
+
+
+def test_a_gigabyte_of_nothing_is_refused_at_once(tmp_path):
+    for name in ("large.npz", "large.toml"):
+        with open(tmp_path / name, "wb") as file:
+            file.truncate(2_000_000_000)  # sparse
+    before = time.process_time()
+    with pytest.raises(iga.StateError, match="larger than"):
+        iga.load(tmp_path / "large.npz")
+    with pytest.raises(iga.SceneError, match="larger than"):
+        iga.load_scene(tmp_path / "large.toml")
+    assert time.process_time() - before < 1.0
+
+
+def test_a_newer_file_names_both_versions(saved, tmp_path, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(files, "SCHEMA", 7)
+        files.write_arrays(tmp_path / "newer.npz", {}, {})
+    with pytest.raises(iga.StateError, match=r"newer\.npz: schema 7, this version reads schema 1"):
+        iga.load(tmp_path / "newer.npz")
+
+
+@pytest.mark.parametrize(
+    "make", [lambda p: p.mkdir(), lambda p: None, lambda p: p.write_bytes(b"")]
+)
+def test_what_is_no_file_is_named(tmp_path, make):
+    path = tmp_path / "state.npz"
+    make(path)
+    with pytest.raises(iga.StateError, match=r"state\.npz"):
+        iga.load(path)
+
+
+def test_a_full_disk_leaves_the_generation_before(drop, tmp_path):
+    """A write that meets the limit of file sizes, in a process of its own."""
+    drop.save(tmp_path / "state.npz")
+    before = (tmp_path / "state.npz").read_bytes()
+    code = f"""
+import resource, signal
+import iga_membrane as iga
+solution = iga.load({str(tmp_path / "state.npz")!r})
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+try:
+    solution.save({str(tmp_path / "state.npz")!r})
+except iga.OutputError as error:
+    print("OutputError", "state.npz" in str(error), solution.success)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["OutputError", "True", "True"]
+    assert (tmp_path / "state.npz").read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["state.npz"]
+
+
+# Going on
+
+
+def angles(options=None, on_fail="raise", report=lambda load: None):
+    return iga.trace(
+        lambda angle: droplet(angle, 1.0, elements=8),
+        [90.0, 110.0, 130.0, 150.0],
+        parameter="substrate.contact_angle",
+        options=options,
+        on_fail=on_fail,
+        report=report,
+    )
+
+
+class Killed(Exception):
+    pass
+
+
+def killed_after(count):
+    loads = []
+
+    def report(load):
+        loads.append(load)
+        if len(loads) == count:
+            raise Killed
+
+    return report
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_an_interrupted_path_goes_on_to_the_same_end(tmp_path, count):
+    whole = angles()
+    state = tmp_path / "state.npz"
+    options = iga.SolverOptions(checkpoint=state)
+    with pytest.raises(Killed):
+        angles(options, report=killed_after(count))
+    with pytest.raises(iga.StateError, match="no solution yet"):
+        iga.load(state)
+    resumed = angles(replace(options, start=state))
+    assert resumed.values == whole.values
+    for one, two in zip(resumed.solutions, whole.solutions, strict=True):
+        assert np.abs(one.surface.points - two.surface.points).max() <= 1e-10
+        assert one.measures == pytest.approx(two.measures, rel=1e-10)
+    steps = [(step.load, step.iterations) for step in resumed.end.load_steps]
+    assert steps == [(step.load, step.iterations) for step in whole.end.load_steps]
+
+
+def test_only_converged_steps_are_kept(tmp_path, monkeypatch):
+    from iga_membrane.solver import load_stepping as module
+
+    options = iga.SolverOptions(checkpoint=tmp_path / "state.npz")
+    newton, calls = module.newton, []
+
+    def failing(*arguments):
+        calls.append(1)
+        result = newton(*arguments)
+        if len(calls) == 3:
+            result.status = iga.Status.STALLED
+        return result
+
+    monkeypatch.setattr(module, "newton", failing)
+    written = []
+    monkeypatch.setattr(
+        "iga_membrane.solver.state.write_state",
+        lambda path, state, keep: written.append((state.load, state.result.status)),
+    )
+    angles(options)
+    loads = [load for load, _ in written]
+    assert all(status is None for _, status in written)
+    assert loads == sorted(set(loads))
+    # one attempt failed; the first scene is not an attempt
+    assert len(loads) == len(calls) - 1 + 1
+
+
+def test_the_cpu_limit_leaves_a_state_to_go_on_from(tmp_path):
+    state = tmp_path / "state.npz"
+    short = iga.SolverOptions(checkpoint=state, max_cpu_s=1e-3)
+    path = angles(short, on_fail="return")
+    assert path.end.status is iga.Status.INTERRUPTED
+    whole, resumed = angles(), None
+    for _ in range(30):
+        limit = iga.SolverOptions(checkpoint=state, max_cpu_s=0.15, start=state)
+        start = limit if state.exists() else replace(limit, start=None)
+        resumed = angles(start, on_fail="return")
+        if resumed.success:
+            break
+        resumed.end.save(state)
+    assert resumed.success
+    assert resumed.end.measures == pytest.approx(whole.end.measures, rel=1e-10)
+
+
+def test_a_damaged_checkpoint_goes_on_from_the_one_before(tmp_path, caplog):
+    state = tmp_path / "state.npz"
+    options = iga.SolverOptions(checkpoint=state)
+    with pytest.raises(Killed):
+        angles(options, report=killed_after(3))
+    data = bytearray(state.read_bytes())
+    data[len(data) // 2] ^= 1
+    state.write_bytes(data)
+    resumed = angles(replace(options, start=state))
+    assert "state.npz: corrupt" in caplog.text
+    assert resumed.end.measures == pytest.approx(angles().end.measures, rel=1e-10)
+    (tmp_path / "state.previous.npz").unlink()
+    state.write_bytes(data)
+    with pytest.raises(iga.StateError, match="corrupt"):
+        angles(replace(options, start=state))
+
+
+@pytest.mark.parametrize("change", [{"tolerance": 1e-7}, {"quadrature": 6}])
+def test_a_checkpoint_of_other_options_is_refused(tmp_path, change):
+    state = tmp_path / "state.npz"
+    options = iga.SolverOptions(checkpoint=state)
+    with pytest.raises(Killed):
+        angles(options, report=killed_after(2))
+    with pytest.raises(iga.StateError, match="not the state of this path"):
+        angles(replace(options, start=state, **change))
+
+
+def test_a_solution_starts_another_solve_of_its_space(saved):
+    scene = droplet(125, 1.2, elements=8)
+    fresh = iga.solve(scene)
+    started = iga.solve(scene, iga.SolverOptions(start=saved))
+    for name in ("energy", "height", "contact_radius", "pressure"):
+        assert started.measures[name] == pytest.approx(fresh.measures[name], rel=1e-6)
+    with pytest.raises(iga.SceneError, match="expected from the discretization"):
+        iga.solve(droplet(125, 1.2, elements=9), iga.SolverOptions(start=saved))
+    with pytest.raises(iga.SceneError, match=r"solver\.start"):
+        iga.SolverOptions(start="drop.json")
+
+
+SCENE = """
+scene = "sessile_droplet"
+[liquid]
+volume = 4.1887902047863905
+[gravity]
+acceleration = 1.0
+[substrate]
+contact_angle = 90.0
+[discretization]
+elements = 20
+degree = 4
+model = "half"
+[[path]]
+parameter = "substrate.contact_angle"
+values = [90.0, 105.0, 120.0, 135.0, 150.0]
+"""
+
+
+@pytest.mark.parametrize(
+    "sign", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
+def test_a_killed_command_goes_on_from_its_state(tmp_path, sign):
+    scene, out = tmp_path / "scene.toml", tmp_path / "out"
+    scene.write_text(SCENE)
+    command = [sys.executable, "-m", "iga_membrane", "solve", str(scene), "--out", str(out)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    state = out / "state.npz"
+    deadline = time.monotonic() + 60
+    while not (out / "state.previous.npz").exists():
+        assert process.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    process.send_signal(sign)
+    process.wait()
+    assert process.returncode != 0
+    assert not (out / "result.json").exists()
+    again = tmp_path / "again.toml"
+    again.write_text(SCENE.replace("[[path]]", f'[solver]\nstart = "{state}"\n[[path]]'))
+    assert main(["solve", str(again), "--out", str(out)]) == 0
+    assert main(["solve", str(scene), "--out", str(tmp_path / "whole")]) == 0
+    one, two = (
+        json.loads((folder / "result.json").read_text()) for folder in (out, tmp_path / "whole")
+    )
+    assert one["measures"] == pytest.approx(two["measures"], rel=1e-10)
+    assert [s["value"] for s in one["history"]] == [s["value"] for s in two["history"]]
+    visible = sorted(p.name for p in out.iterdir() if not p.name.startswith("."))
+    assert visible == ["result.json", "state.npz"]
+
+
+def test_a_foreign_start_exits_2(tmp_path, capsys):
+    (tmp_path / "state.npz").write_bytes(b"PK")
+    scene = tmp_path / "scene.toml"
+    text = SCENE.replace("[[path]]", f'[solver]\nstart = "{tmp_path / "state.npz"}"\n[[path]]')
+    scene.write_text(text)
+    assert main(["solve", str(scene), "--out", str(tmp_path / "out")]) == 2
+    assert "not a state file" in capsys.readouterr().err
+
+
+# What the package never does with a file
+
+
+def test_no_file_content_is_ever_executed():
+    """X1: no unpickling, no evaluation, no shell, anywhere in the package."""
+    banned = {"pickle", "marshal", "shelve", "dill", "joblib", "cloudpickle", "yaml"}
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                assert not banned & {a.name.split(".")[0] for a in node.names}, path
+            elif isinstance(node, ast.ImportFrom):
+                assert (node.module or "").split(".")[0] not in banned, path
+            elif isinstance(node, ast.Call):
+                name = node.func.id if isinstance(node.func, ast.Name) else ""
+                assert name not in ("eval", "exec", "compile", "__import__"), path
+                if isinstance(node.func, ast.Attribute):
+                    owner = getattr(node.func.value, "id", "")
+                    assert owner != "os" or node.func.attr not in ("system", "popen"), path
+                for word in node.keywords:
+                    true = isinstance(word.value, ast.Constant) and word.value.value is True
+                    assert not (word.arg in ("allow_pickle", "shell", "jinja2") and true), path
+
+
+def test_an_output_folder_is_never_named_by_the_scene_file():
+    """X4: a scene file has no field that names an output."""
+    from iga_membrane.scenes.scene_keys import KEYS
+
+    assert not {"out", "output", "path", "file", "name"} & {k for t in KEYS if t for k in KEYS[t]}
