@@ -25,6 +25,8 @@ FEWEST = 48
 """Elements from the middle to a side at least, for the droplet itself."""
 MOST = 600
 """The same at most, by default."""
+SPREAD = 0.3
+"""Growth of the finely meshed foot with ``1 + cos`` of the contact angle."""
 FINE = 0.75
 """Part of the elements from the middle of the square to a side that lies under the foot."""
 
@@ -36,17 +38,23 @@ class Skin:
     Attributes
     ----------
     space, points, directions : of the membrane.
-    foot : estimated radius of its flat foot in z = 0.
+    pressure : estimated at its foot.
     """
 
     space: Space
     points: Array
     directions: Array
-    foot: float
+    pressure: float
 
 
 def whole_skin(
-    bond: float, volume: float, length: float, degree: int, elements: int, start: object = None
+    bond: float,
+    volume: float,
+    length: float,
+    degree: int,
+    elements: int,
+    contact_angle: float = 180.0,
+    start: object = None,
 ) -> Skin:
     """Flat-footed droplet of least energy, its foot meshed evenly.
 
@@ -56,10 +64,13 @@ def whole_skin(
     length : over which the contact changes: radius of the smallest asperity.
     elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along
         ``length``.
+    contact_angle : the smallest on the asperities: below 180 degrees more of them are wet.
     start : "above" or "touching" for a sphere; anything else for the flat-footed droplet.
     """
     pancake = least_energy_pancake(180.0, bond, volume, steepest=180.0)
+    pressure = estimated_pressure(pancake, bond, volume)
     foot = estimated_foot(pancake, bond, volume)
+    foot *= 1.0 + SPREAD * (1.0 + float(np.cos(np.radians(contact_angle))))
     widest = pancake.flat + pancake.radius
     wide = min(1.1 * foot + 2.0 * length, 0.95 * widest)
     meridian = _meridian(pancake, wide)
@@ -79,14 +90,22 @@ def whole_skin(
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
-        points, _ = closed_surface(space, _ball(volume), stretch)
+        points, _ = closed_surface(
+            space, ball((3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)), stretch
+        )
         points[:, 2] += length if start == "above" else 0.0
-    return Skin(space, points, directions, foot)
+    return Skin(space, points, directions, pressure)
 
 
 def estimated_foot(pancake: Pancake, bond: float, volume: float) -> float:
-    """Contact radius on a plane at 180 degrees: weight over pressure, the pressure by the virial
-    ``3 p V = 2 E_surf + 4 E_grav`` of the start."""
+    """Contact radius on a plane at 180 degrees: weight over pressure."""
+    pressure = estimated_pressure(pancake, bond, volume)
+    return float(np.sqrt(bond * volume / (np.pi * pressure)))
+
+
+def estimated_pressure(pancake: Pancake, bond: float, volume: float) -> float:
+    """Pressure at a plane at 180 degrees, by the virial ``3 p V = 2 E_surf + 4 E_grav`` of the
+    start."""
     u, w = gauss(20)
     angle = pancake.turn * u
     r = pancake.flat + pancake.radius * np.sin(angle)
@@ -95,8 +114,7 @@ def estimated_foot(pancake: Pancake, bond: float, volume: float) -> float:
     area = 2.0 * np.pi * r @ (rate * np.hypot(np.cos(angle), pancake.aspect * np.sin(angle)))
     area += 2.0 * np.pi * pancake.flat**2
     weight = bond * np.pi * (r**2 * z) @ (rate * pancake.aspect * np.sin(angle))
-    pressure = (2.0 * area + 4.0 * weight) / (3.0 * volume)
-    return float(np.sqrt(bond * volume / (np.pi * pressure)))
+    return float((2.0 * area + 4.0 * weight) / (3.0 * volume))
 
 
 def _meridian(pancake: Pancake, wide: float) -> Meridian:
@@ -113,9 +131,8 @@ def _meridian(pancake: Pancake, wide: float) -> Meridian:
     return Meridian(r[inside], z[inside], normal[inside])
 
 
-def _ball(volume: float) -> Meridian:
+def ball(radius: float) -> Meridian:
     """A sphere that stands on the origin."""
-    radius = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     u = np.linspace(np.pi, 0.0, 2001)[1:-1]
     normal = np.stack([np.sin(u), np.cos(u)], axis=-1)
     return Meridian(radius * np.sin(u), radius * (1.0 + np.cos(u)), normal)

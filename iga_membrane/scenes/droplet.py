@@ -23,7 +23,16 @@ from ..terms import (
     Term,
     Volume,
 )
-from .foot import Question, foot_of, rim_radius, with_rim
+from .foot import (
+    CONTACT_LINES,
+    PREDICTABLE,
+    Foot,
+    Question,
+    foot_of,
+    rim_radius,
+    with_angle,
+    with_rim,
+)
 from .liquid import Discretization, Liquid
 from .scene import FreeEdge, Ramp, Scene
 
@@ -41,11 +50,13 @@ def sessile_droplet(
     start: Surface | str | None = None,
     penalty: float | None = None,
     penetration_tolerance: float = 1e-2,
+    contact_line: str = "auto",
 ) -> Scene:
     """Droplet of a volume on a plane, on top of a sphere, or on asperities.
 
     Below 180 degrees it has a contact line; at 180 its foot is a contact area and the whole skin is
-    one closed membrane. On asperities only 180 degrees are available yet.
+    one closed membrane. On asperities below 180 degrees that membrane passes through them, with a
+    contact line on each.
 
     Parameters
     ----------
@@ -62,17 +73,20 @@ def sessile_droplet(
         units of tension over squared length, length that of a ball of the volume.
     penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
         that exact contact leaves at most and beyond which a state is no success.
+    contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
+        through the asperities; "adhesion", it lies on asperities that attract it, for angles near
+        180 degrees; "auto" chooses.
 
     Raises
     ------
     SceneError
-        A value out of its range; a contact angle below 180 degrees on asperities (not available
-        yet); a model with a mirror plane that gravity or the substrate does not have; a start below
-        the substrate.
+        A value out of its range; a model with a mirror plane that gravity or the substrate does not
+        have; a start below the substrate.
     """
     liquid = liquid or Liquid()
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
+    choice("solver.contact_line", contact_line, CONTACT_LINES)
     acceleration = _acceleration(gravity)
     origin, axes = _frame(substrate)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
@@ -95,7 +109,7 @@ def sessile_droplet(
         None if penalty is None else penalty * liquid.surface_tension / length**2,
         penetration_tolerance,
     )
-    parts = Question(substrate, asked, scale, bond, start, liquid, law)
+    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line)
     built = foot_of(parts)
     sector = built.sector
     if isinstance(substrate, Plane):
@@ -110,9 +124,13 @@ def sessile_droplet(
             gravity=[size / pull * g for g in acceleration],
             discretization=replace(asked, model=sector.model),
             hold=hold,
+            contact_line=contact_line,
         )
 
     described = _describe(substrate, volume, liquid, acceleration, hold)
+    ramp = None
+    if bond.any() and isinstance(substrate, (Plane, Sphere)) and not built.tangent:
+        ramp = Ramp("gravity.acceleration", (0.0, pull), at)
     scene = Scene(
         built.surface,
         [*terms, *built.terms],
@@ -120,15 +138,15 @@ def sessile_droplet(
         scale=scale,
         grading=built.grading,
         directions=built.directions,
-        ramp=Ramp("gravity.acceleration", (0.0, pull), at)
-        if bond.any() and isinstance(substrate, (Plane, Sphere)) and not built.tangent
-        else None,
+        ramp=ramp,
         substrate=substrate,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=_hints(substrate, bond, sector),
     )
+    if built.predictor:
+        return _with_start(scene, terms, built)
     if not built.tangent:
         return scene
 
@@ -146,6 +164,26 @@ def sessile_droplet(
         )
 
     return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, below))
+
+
+def _with_start(scene: Scene, terms: Sequence[Term], built: Foot) -> Scene:
+    """A scene with contact lines on asperities, and the way to it from an angle where its start is
+    good."""
+    solid = scene.substrate
+    assert solid is not None
+
+    def started(angle: float) -> Scene:
+        """The scene at contact angles of at least ``angle``."""
+        raised = with_angle(solid, angle)
+        line = replace(built.terms[0], solid=raised)  # type: ignore[type-var]
+        near = replace(scene, terms=[*terms, *built.predictor], ramp=None)
+        return replace(scene, terms=[*terms, line], substrate=raised, ramp=None, predictor=near)
+
+    least, good = float(np.min(solid.contact_angle)), PREDICTABLE[0]
+    if least >= good:
+        return started(least)
+    ramp = Ramp("substrate.contact_angle", (good, least), started, only=True)
+    return replace(scene, ramp=ramp)
 
 
 def _acceleration(gravity: Any) -> Array:

@@ -10,12 +10,22 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
-from ..splines import Grading, points_of
+from ..splines import Grading, pillow_space, points_of
+from ..surface.closed import Stretch, closed_surface
 from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
-from ..terms import Contact, LineTerm, PlaneContactLine, Scale, SphereContactLine, Term
-from .asperities import estimated_foot, smallest_model, whole_skin
+from ..terms import (
+    Contact,
+    LineTerm,
+    PlaneContactLine,
+    Scale,
+    SphereContactLine,
+    Term,
+    TrimmedContactLine,
+)
+from ..terms.term import AnySolid
+from .asperities import ball, estimated_foot, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
 
@@ -31,6 +41,7 @@ class Question:
     start: Surface | str | None
     liquid: Liquid
     law: Contact
+    contact_line: str
 
     @property
     def down(self) -> float:
@@ -40,7 +51,7 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class Foot:
-    """Start, support and price of a foot."""
+    """Start, support and price of a foot; ``predictor`` : other terms that give a better start."""
 
     surface: Surface
     sector: Sector
@@ -50,17 +61,32 @@ class Foot:
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
+    predictor: Sequence[Term] = ()
+
+
+CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
 
 
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
-    if not isinstance(parts.substrate, (Plane, Sphere)):
-        return _on_an_area(parts)
-    if parts.substrate.contact_angle < 180.0:
+    solid, way = parts.substrate, parts.contact_line
+    refused: tuple[str, ...] = ("trimmed", "adhesion")
+    if isinstance(solid, (SphereLattice, Spheres)):
+        refused = ("conforming",)
+    elif isinstance(solid, Sphere):
+        refused = ("adhesion",)
+    if way in refused:
+        raise SceneError(
+            f'solver.contact_line = "{way}": not available here; on a plane it is "conforming", on '
+            'one sphere also "trimmed", on asperities "trimmed", or "adhesion" near 180 degrees; '
+            '"auto" knows'
+        )
+    if isinstance(solid, Sphere) and way == "trimmed":
+        return _through_one(parts)
+    if isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0:
         return _on_a_line(parts)
     exact = parts.law.penalty is None and parts.start is None
-    return _on_the_plane(parts) if isinstance(parts.substrate, Plane) and exact \
-        else _on_an_area(parts)  # fmt: skip
+    return _on_the_plane(parts) if isinstance(solid, Plane) and exact else _on_an_area(parts)
 
 
 def _on_a_line(parts: Question) -> Foot:
@@ -88,14 +114,10 @@ def _on_a_line(parts: Question) -> Foot:
 def _on_an_area(parts: Question) -> Foot:
     """The whole skin, lying on the solid with its foot."""
     substrate, scale = parts.substrate, parts.scale
-    for angle in np.atleast_1d(np.asarray(substrate.contact_angle)):
-        if angle < 180.0:
-            raise SceneError(
-                f"substrate.contact_angle = {angle:g}: not available yet on asperities; 180 is"
-            )
     if parts.asked.space != "bspline":
         raise SceneError(
-            f'discretization.space = "{parts.asked.space}": a contact area needs "bspline"'
+            f'discretization.space = "{parts.asked.space}": a membrane over its whole foot needs '
+            '"bspline"'
         )
     x, y, _ = (float(b) for b in parts.bond)
     tiny = 1e-14 * float(np.abs(parts.bond).max())
@@ -110,7 +132,8 @@ def _on_an_area(parts: Question) -> Foot:
         )
     unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
     length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
-    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, parts.start)
+    least = float(np.min(substrate.contact_angle))
+    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, least, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
@@ -118,8 +141,96 @@ def _on_an_area(parts: Question) -> Foot:
     sector = Sector(model)
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
     # on a plane every place is as good, and the centroid is held
-    supports = [Shift(free)] if free and not isinstance(substrate, Plane) else []
-    return Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
+    # contact lines lie in the part of the membrane that takes no part in shifts
+    above = 0.0 if least == 180.0 else 2.0 * largest_radius(local)
+    supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
+    foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
+    if least == 180.0:
+        return foot
+    most = float(np.max(substrate.contact_angle))
+    if parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP):
+        if most > least:
+            raise SceneError(
+                f"substrate.contact_angle: {least:g} to {most:g} degrees: adhesion has one angle "
+                "for all spheres; give one, or smaller ones"
+            )
+        return replace(foot, terms=[replace(parts.law, adhesion=adhesion(parts.liquid, least))])
+    return _through(foot, parts, skin.pressure)
+
+
+SHARP = 172.0
+"""Contact angle in degrees above which a line on an asperity is not resolved by the default mesh:
+the membrane leaves so flat that lying on the sphere, which attracts it, is the better model."""
+
+
+def adhesion(liquid: Liquid, contact_angle: float) -> float:
+    """Energy per wetted area, Young and Dupre's ``gamma (1 + cos(theta))``."""
+    return liquid.surface_tension * (1.0 + float(np.cos(np.radians(contact_angle))))
+
+
+def _through_one(parts: Question) -> Foot:
+    """A ball that passes through a sphere: without gravity its outer part is the drop."""
+    solid, scale = parts.substrate, parts.scale
+    assert isinstance(solid, Sphere)
+    if (
+        solid.contact_angle == 180.0
+        or parts.law.penalty is not None
+        or parts.start is not None
+        or parts.asked.space != "bspline"
+    ):
+        raise SceneError(
+            'solver.contact_line = "trimmed": on one sphere it needs an angle below 180 degrees, '
+            'the scene\'s own start, no penalty and space "bspline"'
+        )
+    mesh, radius = parts.asked.mesh(degree=2, elements=BALL_ELEMENTS), solid.radius / scale.length
+    polar, cap = drop_on_sphere(solid.contact_angle, radius, BALL)
+    space = pillow_space(mesh.degree, mesh.elements)
+    points, directions = closed_surface(space, ball(cap.radius), Stretch())
+    # the line lies 1 - cos(polar) radii under the sphere's top, at the cap's lowest circle
+    lowest = -2.0 * radius * np.sin(0.5 * polar) ** 2
+    points[:, 2] += lowest - cap.radius * (1.0 + np.cos(cap.turn))
+    line = TrimmedContactLine(parts.liquid.surface_tension, solid)
+    surface = Surface(space, scale.to_world(points))
+    return Foot(surface, _sector(mesh, parts.bond), mesh, [line], directions=directions)
+
+
+BALL_ELEMENTS = 48
+"""From the middle of such a ball's foot to its widest place."""
+
+
+def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
+    """The skin passes through the asperities; a penalty under which it sinks into them as deep as
+    a flat membrane at the contact angle tells where to start."""
+    substrate, scale = parts.substrate, parts.scale
+    assert isinstance(substrate, (Sphere, SphereLattice, Spheres))
+    if parts.law.penalty is not None:
+        raise SceneError(
+            'solver.contact = "penalty": only at 180 degrees; leave it out below, contact lines '
+            "need none"
+        )
+    line = TrimmedContactLine(parts.liquid.surface_tension, substrate)
+    angle = np.clip(np.mean(substrate.contact_angle), *PREDICTABLE)
+    r = scale.local_solid(substrate).scale
+    sunk = r * (1.0 + np.cos(np.radians(angle)))
+    law = (pressure + 2.0 / r) / sunk * scale.tension / scale.length**2
+    below = Contact(with_angle(substrate, 180.0), float(law), 1.0)
+    return replace(foot, terms=[line], predictor=[below])
+
+
+def largest_radius(solid: AnySolid) -> float:
+    """Of spheres; 0 for a plane."""
+    return float(np.max(solid.radii if isinstance(solid, Spheres) else getattr(solid, "radius", 0)))
+
+
+PREDICTABLE = 135.0, 175.0
+"""Contact angles, in degrees, for which that start is good."""
+
+
+def with_angle(solid: AnySolid, angle: float) -> AnySolid:
+    """The solid with contact angles of at least ``angle``."""
+    if isinstance(solid, Spheres):
+        return replace(solid, contact_angle=np.maximum(solid.contact_angle, angle))
+    return replace(solid, contact_angle=max(solid.contact_angle, angle))
 
 
 COARSEST = 0.2

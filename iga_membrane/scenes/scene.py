@@ -37,6 +37,7 @@ class Ramp:
     values : what it is at equal parts of the load, from 0 to 1.
     scene_at : value of the parameter to the scene.
     asked : whether the user wants the way itself, not only its end: no direct solve is tried.
+    only : whether a direct solve is known to fail.
     bound : value from which on a balance of forces known in closed form rules out every
         equilibrium, or None.
     """
@@ -45,6 +46,7 @@ class Ramp:
     values: tuple[float, ...]
     scene_at: Callable[[float], Scene] = field(repr=False)
     asked: bool = False
+    only: bool = False
     bound: float | None = None
 
     @property
@@ -93,6 +95,8 @@ class Scene:
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
     ramp : the way to this scene if a direct solve fails.
+    predictor : a scene of the same space whose equilibrium is near this one's; contact lines start
+        from it.
     free_edge : the way to find a fixed edge's place at 180 degrees.
     substrate : the solid that the membrane touches, for its kind, forces and pictures.
     hold : axes along which the user asked for the centroid to be held.
@@ -110,6 +114,7 @@ class Scene:
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
     ramp: Ramp | None = field(default=None, repr=False)
+    predictor: Scene | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
     hold: str = ""

@@ -21,6 +21,7 @@ from .asperities import STARTS
 from .cell import asperity_cell
 from .droplet import HOLDS, sessile_droplet
 from .film import film_between_rings
+from .foot import CONTACT_LINES
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Ramp, Scene
 from .scene_keys import KEYS, check_numbers, table_of
@@ -208,6 +209,7 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
         shape=cell.get("shape", "square"),
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
         discretization=Discretization(**tables["discretization"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
         **_contact(tables["solver"]),
     )
 
@@ -227,6 +229,7 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
         start=_start(tables["solver"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
         **_contact(tables["solver"]),
     )
 
@@ -330,6 +333,7 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
         volume=sheet.get("volume"),
         liquid_weight=sheet.get("liquid_weight", False),
         discretization=Discretization(**tables["discretization"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
     )
 
 
@@ -384,7 +388,7 @@ def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
     for key, only in built.items():
         if table.get(key, only) != only:
             raise _later(f'solver.{key} = "{table[key]}"')
-    if table.get("contact_line", "auto") not in ("auto", "conforming"):
+    if table.get("contact_line", "auto") not in CONTACT_LINES:
         raise _later(f'solver.contact_line = "{table["contact_line"]}"')
     for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
         if key in table:

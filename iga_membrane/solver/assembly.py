@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, LineTable, Table
-from ..surface.motion import Spines
+from ..surface.motion import Motion, Spines
 from ..surface.sector import mirrors, sector_elements, sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
@@ -133,9 +133,8 @@ class Assembly:
         table = sector_table(surface.space, scene.sector, points)
         area = vary.element_points(table, surface.points).area * table.weights
         elements, _ = sector_elements(surface.space, scene.sector)
-        return ContactSet(
-            term.solid, table, area, term.penalty, term.depth, surface.space, elements
-        )
+        law = term.penalty, term.depth, term.adhesion
+        return ContactSet(term.solid, table, area, *law, surface.space, elements)
 
     def _trim(self, scene: Scene) -> Trim | None:
         """The scene's contact lines inside the membrane."""
@@ -211,6 +210,15 @@ class Assembly:
         self.seconds += process_time() - start
         return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
 
+    def energy(self, surface: Surface) -> float:
+        """Energy of the liquid and its contact, without what ties the control points."""
+        total = self.energies(surface).total
+        return (
+            total
+            if self.trim is None
+            else total - self.tension * self.trim.ties.energy(surface.points)
+        )
+
     def near_contact(self, surface: Surface, displacement: Array) -> float:
         """Largest displacement over the contact length, of control points near the solid."""
         if self.contact is not None:
@@ -221,6 +229,17 @@ class Assembly:
             return 0.0
         moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)
         return float(moved.max(initial=0.0)) / length
+
+    def relaxed(self, surface: Surface, motion: Motion) -> Surface:
+        """The same liquid; what lies inside a solid, and depends on nothing, smoothed."""
+        if self.trim is None:
+            return surface
+        self.trim.hold(surface.points)
+        heights = np.einsum("ki,ki->k", surface.points, motion.directions[: len(surface.points)])
+        level = np.zeros(self.size + 1)
+        level[motion.unknowns[: len(heights)]] = heights
+        step = self.trim.ties.extended(level[:-1]) - level[:-1]
+        return surface.moved(surface.points + motion.displacement(step))
 
     def extended(self, step: Array) -> Array:
         """A step in which unknowns that nothing outside a solid depends on follow the others."""
@@ -293,6 +312,8 @@ class Assembly:
         area = sum(vary.energies(rows, part, [])[0] for rows, part in self._parts(points, at))
         if self.trim is not None:
             return area, *self.trim.wetting(points)
+        if self.contact is not None and self.contact.adhesion:
+            return area, -self.contact.gained(points), 0.0
         return (
             area,
             sum(t.energy(edge, points, t.strength, none) for t, edge in self.lines),
@@ -306,8 +327,8 @@ class Assembly:
         if self.trim is None:
             return [(rows, at.part(elements)) for elements, rows in self._groups]
         outside = self.trim.outside(points)
-        cut = outside.area
-        return [(self.table.weighted(outside.share), at), (cut, vary.element_points(cut, points))]
+        whole, cut = (self._shifted_table.weighted(outside.share), at), outside.area
+        return [whole, (cut, vary.element_points(cut, points))] if len(cut.functions) else [whole]
 
     def _integrals(
         self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]
@@ -350,8 +371,6 @@ class Assembly:
         start = process_time()
         points = surface.points
         at = vary.element_points(self.table, points)
-        if self.trim is not None:
-            self.trim.hold(points)
         _, constraints = self._values(points, at)
         gradient, columns, scale = self._first_order(points, directions, at, multipliers)
         matrix = self._second_order(points, directions, at, multipliers)
@@ -511,6 +530,10 @@ class Assembly:
         return table.with_field(self.spines.share, rows.tolist())
 
     @cached_property
+    def _shifted_table(self) -> Table:
+        return self._with_shifts(self.table)
+
+    @cached_property
     def _contact_rows(self) -> Table:
         assert self.contact is not None
         return self._with_shifts(self.contact.table)
@@ -542,8 +565,9 @@ class Assembly:
             return Matrix(self.size, self._pattern)
         if self._tied is not self.trim.ties.across:
             self._tied = self.trim.ties.across
-            groups = [self.spines.unknowns[f] for f in (self.table.functions, self._tied[0])]
-            self._pattern = SparsePattern(self.size, groups)
+            tables = self._shifted_table.functions, self._tied[0]
+            groups = [self.spines.unknowns[functions] for functions in tables]
+            self._pattern = SparsePattern(self.size - len(self.spines.shifts), groups)
         return Matrix(self.size, self._pattern)
 
     @cached_property

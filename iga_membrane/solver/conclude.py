@@ -41,10 +41,10 @@ class Tolerance:
     force : vertical balance of the drop; sideways : horizontal one on asperities, where the
         directions of the forces are those of a few contact points on each.
     line : the same from the spline's own contact angle.
-    angle : error of the mean cosine of the contact angle.
+    angle : error of the mean cosine of the contact angle; where a membrane passes through spheres,
+        on each of them.
     penetration : depth below a plane over the scene's length.
     indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
-    mean_angle : error in degrees of the mean contact angle on a sphere the membrane passes through.
     """
 
     residual: float = 1e-3
@@ -55,7 +55,6 @@ class Tolerance:
     angle: float = 2e-2
     penetration: float = 1e-6
     indentation: float = 1e-2
-    mean_angle: float = 1.0
 
 
 TOLERANCE = Tolerance()
@@ -190,7 +189,7 @@ def _overload(scene: Scene, assembly: Assembly, multipliers: Array) -> str:
 def _reaches_boundary(scene: Scene, surface: Surface) -> bool:
     """Whether a sheet's contact line has come to its rim."""
     solid = sphere_of(scene)
-    if scene.kind != "liquid_sheet" or solid is None:
+    if scene.kind != "liquid_sheet" or solid is None or scene.directions is not None:
         return False
     inner, rim = surface.net[:, 0], surface.net[:, -1]
     width = float(np.linalg.norm(rim - inner, axis=1).min())
@@ -310,7 +309,7 @@ def _contact(
         forces = vertical_forces(at, body, line.gamma, line.contact_angle)
         support = forces.push - forces.line
     else:
-        support = -float(pull_on_sphere(assembly, surface, result.multipliers).total[2])
+        support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
     rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))
@@ -389,15 +388,15 @@ def _contact_objection(
             "discretization.elements",
         )
     if lines:
-        worst = int(np.abs(feet.angles - _young(scene, feet)).argmax()) if len(feet.which) else -1
-        off = float(feet.angles[worst] - _young(scene, feet)[worst]) if worst >= 0 else 0.0
-        if abs(off) > TOLERANCE.mean_angle:
+        off = np.cos(np.radians(feet.angles)) - np.cos(np.radians(_young(scene, feet)))
+        worst = int(np.abs(off).argmax())
+        if abs(off[worst]) > TOLERANCE.angle:
             return (
                 Status.UNDERRESOLVED,
                 None,
-                f"the mean contact angle on sphere {int(feet.which[worst])} is off by {off:.1f} "
-                f"degrees ({TOLERANCE.mean_angle:g} is allowed): take more "
-                "discretization.elements",
+                f"the mean contact angle on sphere {int(feet.which[worst])} is "
+                f"{feet.angles[worst]:.1f} degrees instead of "
+                f"{_young(scene, feet)[worst]:g}: take more discretization.elements",
             )
     inside = engulfed(scene, assembly, surface)
     if inside:

@@ -14,6 +14,7 @@ from ..surface.reparametrize import regridded
 from .assembly import Assembly
 from .linear import SingularMatrix
 from .newton import NewtonOptions, NewtonResult, newton
+from .predictor import first
 from .stability import Stability, stability_of
 from .status import Status
 
@@ -89,9 +90,9 @@ def load_stepping(
     """
     scene = ramp(0.0)
     assembly.load(scene)
-    result = newton(assembly, scene.local_surface(), None, scene.meridian_grading, options)
-    first = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0))
-    path = LoadPath(result, scene, [first])
+    result = first(scene, assembly, options)
+    begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0))
+    path = LoadPath(result, scene, [begun])
     if result.status is not None:
         return path
     reached(scene, result)

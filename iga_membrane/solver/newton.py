@@ -158,6 +158,7 @@ def _iterate(
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
         motion = assembly.spines.on(result.surface)
+        result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
         if not np.isfinite(residual):

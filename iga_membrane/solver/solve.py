@@ -12,12 +12,14 @@ import numpy as np
 
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
+from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
 from .load_stepping import LoadStep, load_stepping
 from .newton import NEAR, NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
+from .predictor import first
 from .solution import Solution
 from .status import Status
 from .trace import walk
@@ -62,7 +64,7 @@ def solve(
         options.max_iterations,
         options.tolerance,
         # a droplet on asperities may roll to a place where it is stable
-        near=0.0 if assembly.contact is not None else NEAR,
+        near=0.0 if _rolls(scene) else NEAR,
         deadline=started + options.max_cpu_s,
     )
     outcome = _iterate(scene, assembly, settings, options, report)
@@ -77,6 +79,13 @@ def solve(
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
             solution = conclude(outcome, assembly, options, started)
     return _delivered(replace(solution, scene=scene), on_fail)
+
+
+def _rolls(scene: Scene) -> bool:
+    """Whether the membrane lies on solids or passes through several of them."""
+    through = any(isinstance(t, TrimmedContactLine) for t in scene.terms)
+    lies = any(isinstance(t, Contact) for t in scene.terms)
+    return lies or (through and scene.kind == "sessile_droplet")
 
 
 def _delivered(solution: Solution, on_fail: str) -> Solution:
@@ -118,8 +127,11 @@ def _iterate(
 
         found, state = tangent_edge(scene.free_edge, assembly, settings, find)
         return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
+    if scene.ramp is not None and scene.ramp.only:
+        path = load_stepping(scene.ramp, assembly, settings, options.min_load_step, report)
+        return Outcome(path.scene, path.result, path.steps, path.bracket)
     start, grading = scene.local_surface(), scene.meridian_grading
-    direct = newton(assembly, start, None, grading, settings)
+    direct = first(scene, assembly, settings)
     steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
     if direct.status is Status.INTERRUPTED or (direct.status is None and direct.index <= 0):
         return Outcome(scene, direct, steps)

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 from ..arrays import Array, Index, Mask
 from ..splines import Faces, Space, jumps
 
-STRENGTH = 0.02
+STRENGTH = 0.004
 """Factor of the jumps' energy over the tension."""
 FREE = 5
 """Iterations after which elements stay tied that no longer need it: they could alternate for
@@ -101,7 +101,8 @@ class Ties:
     @cached_property
     def idle(self) -> Index:
         """Unknowns of which nothing lies outside."""
-        lonely = np.ones(self._size + 1, bool)
+        lonely = np.zeros(self._size + 1, bool)
+        lonely[self._unknowns] = True
         lonely[self._unknowns[self._held]] = False
         return np.flatnonzero(lonely[:-1])
 

@@ -18,8 +18,9 @@ from ..terms.trimmed import CapDensity, Line, on_line, wet_integral
 from ..terms.variations import flux
 from .ties import Ties
 
-CORE = 0.8
-"""Part of a spot's radius at most inside which the membrane counts as deeper than it lies."""
+CORE = 0.65, 0.85
+"""Least and largest part of a spot's radius inside which the membrane counts as deeper than it
+lies."""
 ON_LINE = 1e-7
 """Gap over the contact length that points of a contact line may have."""
 EXTRA = 4
@@ -221,7 +222,7 @@ class Trim:
         np.minimum.at(radii, place, np.linalg.norm(x - middles[place], axis=1))
         psi = np.pi - np.arccos(self.term.cosine(numbers))
         again = 0.5 * psi * solid.radius_of(numbers)
-        self._cores = numbers, middles, np.clip(radii - again, 0.0, CORE * radii)
+        self._cores = numbers, middles, np.clip(radii - again, CORE[0] * radii, CORE[1] * radii)
         self._known.clear()
 
     def _connected(self, active: Mask) -> Mask:

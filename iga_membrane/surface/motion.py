@@ -113,11 +113,12 @@ class Spines:
         primary = int(numbers.max(initial=-1)) + 1
         own = primary + int(seconds.max(initial=-1)) + 1
         self.spare = spare = space.count + len(edge)
-        axes = [axis for s in supports if isinstance(s, Shift) for axis in s.axes]
+        shift = next((s for s in supports if isinstance(s, Shift)), None)
+        axes = "" if shift is None else shift.axes
         self.shifts: Array = np.eye(3)[["xyz".index(axis) for axis in axes]]
         self.share: Array = np.zeros(space.count)
-        if axes:
-            height = np.maximum(surface.points[:, 2], 0.0)
+        if shift is not None:
+            height = np.maximum(surface.points[:, 2] - shift.above, 0.0)
             self.share = height / height.max()
         last: Index = np.arange(len(axes))
         self.size = own + len(axes)

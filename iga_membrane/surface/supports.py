@@ -106,15 +106,17 @@ class Shift:
     """A body that lies on a solid may also be shifted along some axes as a whole, but for its foot.
 
     Given directions that are vertical in the foot follow a shift only so far. It is an unknown of
-    its own, in which every control point takes part by its height at the start; the control
-    points' own steps then leave their mean place alone.
+    its own, in which every control point takes part by its height at the start, over ``above``; the
+    control points' own steps then leave their mean place alone.
 
     Attributes
     ----------
     axes : "x", "y" or "xy"; none that a mirror plane fixes.
+    above : height in the scene's scale up to which control points take no part.
     """
 
     axes: str
+    above: float = 0.0
 
     def __post_init__(self) -> None:
         choice("axes", self.axes, ("x", "y", "xy"))

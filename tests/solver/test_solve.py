@@ -209,7 +209,7 @@ def test_load_stepping_goes_round_a_failed_direct_solve(monkeypatch):
             result.status, result.message = iga.Status.STALLED, "made to fail"
         return result
 
-    monkeypatch.setattr("iga_membrane.solver.solve.newton", fails_first)
+    monkeypatch.setattr("iga_membrane.solver.predictor.newton", fails_first)
     seen = []
     solution = iga.solve(droplet(120, 3.0, elements=8), report=seen.append)
     assert solution.success
@@ -226,7 +226,7 @@ def test_an_independent_audit_finds_a_state_that_is_no_equilibrium(monkeypatch):
     def idle(assembly, surface, multipliers, grading, options):
         return NewtonResult(surface, np.array([2.0]))
 
-    monkeypatch.setattr("iga_membrane.solver.solve.newton", idle)
+    monkeypatch.setattr("iga_membrane.solver.predictor.newton", idle)
     solution = iga.solve(droplet(120, 3.0, elements=8), on_fail="return")
     assert not solution.success
 

@@ -1,0 +1,78 @@
+"""Where to start: the equilibrium of a nearby scene, pressed through the spheres it touches."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array
+from ..scenes.scene import Scene
+from ..surface.sector import mirrors
+from ..surface.surface import Surface
+from .assembly import Assembly
+from .newton import NewtonOptions, NewtonResult, newton
+
+SHALLOW = 0.6
+"""Part of its depth under a flat membrane below which a spot is pressed to that depth."""
+WIDE = 1.5
+"""Reach of that press over the sphere's radius."""
+DIMPLE = 0.3
+"""Depth over radius of a dimple in the middle of every spot: inside its solid the start must lie
+clear of the solid's surface, which a membrane on a penalty follows."""
+
+
+def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonResult:
+    """Newton from a scene's own start, or from the equilibrium of its predictor."""
+    start, multipliers, before = scene.local_surface(), None, None
+    if scene.predictor is not None:
+        near = scene.predictor
+        before = newton(Assembly(near), near.local_surface(), None, None, options)
+        start, multipliers = pressed(scene, assembly, before.surface), before.multipliers
+    result = newton(assembly, start, multipliers, scene.meridian_grading, options)
+    if before is not None:
+        result.iterations = before.iterations + result.iterations
+        result.linear_seconds += before.linear_seconds
+    return result
+
+
+def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
+    """A start for contact lines at Young's angle on every sphere that a membrane has sunk into.
+
+    A flat membrane at depth ``r (1 + cos(theta))`` meets a sphere at the angle theta. Spots that
+    are much shallower are pressed to that depth: a small one is far from any equilibrium.
+
+    Parameters
+    ----------
+    scene : with contact lines inside its membrane.
+    assembly : of that scene.
+    surface : the nearby equilibrium, in the scene's scale.
+    """
+    trim = assembly.trim
+    assert trim is not None
+    solid = trim.term.solid
+    x = assembly.table.values @ surface.points[assembly.table.functions]
+    x = np.concatenate([x.reshape(-1, 3) @ m for m in mirrors(scene.sector)])
+    at = solid.nearest(x)
+    which, place = np.unique(at.which, return_inverse=True)
+    gap = np.full(len(which), np.inf)
+    np.minimum.at(gap, place.ravel(), at.gap)
+    touched = np.flatnonzero(gap < 0)
+    which, depth = which[touched], -gap[touched]
+    centers, radii = solid.center_of(which), solid.radius_of(which)
+    wanted = radii * (1.0 + trim.term.cosine(which))
+    press = np.where(depth < SHALLOW * wanted, (wanted - depth) / SHALLOW, 0.0)
+    deep = np.maximum(depth, wanted)
+    spot = 0.9 * np.sqrt(np.maximum(2.0 * radii * deep - deep**2, 0.0))
+    fall = np.zeros(len(surface.points))
+    for k, center in enumerate(centers):
+        fall += _bump(surface.points, center, WIDE * radii[k], press[k])
+        fall += _bump(surface.points, center, spot[k], DIMPLE * spot[k])
+    return surface.moved(surface.points - np.outer(fall, [0.0, 0.0, 1.0]))
+
+
+def _bump(points: Array, center: Array, reach: float, height: float) -> Array:
+    """(count,) smooth bump round the vertical axis through a sphere, above its lower half."""
+    if not height:
+        return np.zeros(len(points))
+    away = points - center
+    level = np.maximum(1.0 - (away[:, 0] ** 2 + away[:, 1] ** 2) / reach**2, 0.0)
+    return np.asarray(np.where(np.abs(away[:, 2]) < 3.0 * reach, height * level**2, 0.0))

@@ -1,0 +1,214 @@
+"""Contact angles at asperities: cells against closed forms, droplets by balances and refinement."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
+
+import iga_membrane as iga
+
+RADIUS = 0.05
+
+
+def exact_cell(angle, pressure, outer=0.1, radius=RADIUS):
+    """Round cell: vertical equilibrium gives the polar angle, then the profile is an integral."""
+    hang = np.pi - np.radians(angle)
+
+    def unbalanced(phi):
+        a = radius * np.sin(phi)
+        return np.sin(phi - hang) - pressure * (outer**2 - a**2) / (2.0 * a)
+
+    top = minimize_scalar(lambda phi: -unbalanced(phi), bounds=(hang, hang + 1.5), method="bounded")
+    phi = brentq(unbalanced, hang + 1e-9, top.x, xtol=1e-14)
+    a = radius * np.sin(phi)
+
+    def fall(r):
+        sine = pressure * (outer**2 - r**2) / (2.0 * r)
+        return sine / np.sqrt(1.0 - sine**2)
+
+    sag = quad(fall, a, outer, epsabs=1e-15, epsrel=1e-13)[0]
+    return {
+        "phi_deg": np.degrees(phi),
+        "contact_radius": a,
+        "sag": sag,
+        "z_edge": radius * (np.cos(phi) - 1.0) - sag,
+        "F_sphere": pressure * np.pi * outer**2,
+        "F_press": pressure * np.pi * a**2,
+        "A_wet": 2.0 * np.pi * radius**2 * (1.0 - np.cos(phi)),
+    }
+
+
+def largest_pressure(angle, outer=0.1, radius=RADIUS):
+    """De-pinning pressure of a round cell: the most that any line can carry."""
+    hang = np.pi - np.radians(angle)
+
+    def carried(phi):
+        a = radius * np.sin(phi)
+        return 2.0 * a * np.sin(phi - hang) / (outer**2 - a**2)
+
+    found = minimize_scalar(
+        lambda phi: -carried(phi), bounds=(hang, hang + 1.57), method="bounded",
+        options={"xatol": 1e-10},
+    )  # fmt: skip
+    return carried(found.x)
+
+
+def cell(angle, pressure, *, shape="circle", place=(0.0, 0.0), degree=2, elements=None):
+    sphere = iga.Sphere(angle, RADIUS, (*place, -RADIUS))
+    mesh = iga.Discretization(degree=degree, elements=elements)
+    return iga.asperity_cell(
+        sphere, size=0.2, pressure=pressure, shape=shape, discretization=mesh,
+        contact_line="trimmed",
+    )  # fmt: skip
+
+
+SCALES = {"phi_deg": np.degrees(1.0), "A_wet": RADIUS**2, "F_sphere": RADIUS, "F_press": RADIUS}
+
+
+def errors(solution, exact):
+    return {k: abs(solution.measures[k] - v) / SCALES.get(k, RADIUS) for k, v in exact.items()}
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
+@pytest.mark.parametrize("angle", [90.0, 105.0, 120.0, 135.0, 150.0, 160.0])
+def test_a_round_cell_agrees_with_its_closed_form(angle, share):
+    pressure = share * largest_pressure(angle)
+    solution = iga.solve(cell(angle, pressure, elements=16))  # h = r / 8
+    assert max(errors(solution, exact_cell(angle, pressure)).values()) < 1e-4
+    assert solution.measures["contact_angle_measured"] == pytest.approx(angle, abs=1.0)
+
+
+@pytest.mark.parametrize("angle", [165.0, 170.0])
+def test_a_round_cell_near_180_degrees(angle):
+    pressure = 0.3 * largest_pressure(angle)
+    solution = iga.solve(cell(angle, pressure, elements=16))
+    assert max(errors(solution, exact_cell(angle, pressure)).values()) < 1e-3
+
+
+@pytest.mark.parametrize(("degree", "rate", "last"), [(2, 2.5, 3e-7), (3, 3.0, 1e-8)])
+def test_contact_lines_converge_with_the_degree(degree, rate, last):
+    exact = exact_cell(150.0, 2.0)
+    found = [
+        errors(iga.solve(cell(150.0, 2.0, degree=degree, elements=n)), exact) for n in (8, 16, 32)
+    ]
+    for name in ("phi_deg", "z_edge", "A_wet"):
+        first, _, third = (e[name] for e in found)
+        assert np.log2(first / third) / 2.0 > rate, name
+        assert third < last, name
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.02, 0.0), (0.02, 0.01)])
+def test_a_square_cell_carries_its_pressure_and_converges(place):
+    coarse, fine = (
+        iga.solve(cell(150.0, 2.0, shape="square", place=place, elements=n)) for n in (24, 40)
+    )
+    assert fine.measures["F_sphere"] == pytest.approx(2.0 * 0.2**2, rel=1e-9)
+    for name in ("phi_deg", "sag", "z_edge", "z_corner", "A_wet"):
+        scale = SCALES.get(name, RADIUS)
+        assert abs(fine.measures[name] - coarse.measures[name]) / scale < 3e-5, name
+    sideways = np.array(fine.contact["asperities"][0]["force_vector"][:2])
+    # the nearer wall pulls the sphere's membrane less: none in the middle
+    assert (np.abs(sideways) < 1e-9).all() if place == (0.0, 0.0) else sideways[0] > 1e-3
+
+
+@pytest.mark.parametrize("angle", [120.0, 150.0])
+def test_beyond_the_largest_pressure_a_cell_is_lost(angle):
+    most = largest_pressure(angle)
+    assert iga.solve(cell(angle, 0.99 * most, elements=16)).success
+    lost = iga.solve(cell(angle, 1.02 * most, elements=16), on_fail="return")
+    assert lost.status is iga.Status.LIMIT_POINT
+    assert lost.bracket.lo == pytest.approx(most, rel=5e-3)
+    assert lost.bracket.hi == pytest.approx(most, rel=5e-3)
+    assert (lost.bracket.index_lo, lost.bracket.index_hi) == (0, 1)
+
+
+def papers_droplet(angle, elements=None, **lattice):
+    asperities = iga.SphereLattice(angle, RADIUS, 0.2, **lattice)
+    mesh = iga.Discretization(elements=elements)
+    return iga.sessile_droplet(
+        asperities, volume=4.0 * np.pi / 3.0, gravity=1.0, discretization=mesh
+    )
+
+
+def assert_balanced(solution, angle):
+    assert solution.contact["support_force"] == pytest.approx(4.0 * np.pi / 3.0, rel=1e-5)
+    for asperity in solution.contact["asperities"]:
+        assert asperity["contact_angle"] == pytest.approx(angle, abs=1.0)
+
+
+def test_the_papers_droplet_at_150_degrees_touches_49_asperities():
+    solution = iga.solve(papers_droplet(150.0))
+    assert_balanced(solution, 150.0)
+    assert solution.contact["wet_solids"] == 49
+    assert solution.measures["height"] == pytest.approx(1.426953, abs=1e-5)
+    assert solution.measures["energy"] == pytest.approx(15.62535, abs=2e-5)
+    again = iga.solve(papers_droplet(150.0))
+    assert again.measures == solution.measures
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("angle", "wet"), [(160.0, 45), (135.0, 49), (120.0, 57)])
+def test_the_papers_droplet_at_other_angles(angle, wet):
+    coarse, fine = iga.solve(papers_droplet(angle)), iga.solve(papers_droplet(angle, elements=96))
+    for solution in (coarse, fine):
+        assert_balanced(solution, angle)
+        assert solution.contact["wet_solids"] == wet
+    assert coarse.measures["height"] == pytest.approx(fine.measures["height"], abs=5e-5)
+    assert coarse.measures["energy"] == pytest.approx(fine.measures["energy"], rel=5e-6)
+
+
+def test_an_angle_for_each_sphere():
+    """Two spheres of a pair with their own angles: each line meets its own."""
+    centers = [[-0.12, 0.0, -0.1], [0.12, 0.0, -0.1], [0.0, 0.2, -0.1], [0.0, -0.2, -0.1]]
+    angles = [140.0, 140.0, 155.0, 155.0]
+    substrate = iga.Spheres(angles, centers, 0.1)
+    solution = iga.solve(
+        iga.sessile_droplet(substrate, volume=4.0 * np.pi / 3.0, gravity=0.3), on_fail="return"
+    )
+    assert solution.success, solution.message
+    for asperity in solution.contact["asperities"]:
+        expected = angles[asperity["index"]]
+        assert asperity["contact_angle"] == pytest.approx(expected, abs=1.0)
+
+
+def test_a_penalty_is_refused_where_there_are_contact_lines():
+    with pytest.raises(iga.SceneError, match="penalty"):
+        iga.asperity_cell(
+            iga.Sphere(150.0, 0.05, (0, 0, -0.05)), size=0.2, pressure=2.0, penalty=1e4
+        )
+    lattice = iga.SphereLattice(150.0, 0.05, 0.2)
+    with pytest.raises(iga.SceneError, match="penalty"):
+        iga.sessile_droplet(lattice, volume=4.0, gravity=1.0, penalty=1e4)
+    with pytest.raises(iga.SceneError, match="conforming"):
+        iga.sessile_droplet(lattice, volume=4.0, gravity=1.0, contact_line="conforming")
+    with pytest.raises(iga.SceneError, match="trimmed"):
+        iga.sessile_droplet(iga.Plane(150.0), volume=4.0, contact_line="trimmed")
+
+
+@pytest.mark.parametrize("angle", [172.0, 176.0, 179.0, 179.9])
+def test_adhesion_near_180_degrees_agrees_with_the_closed_form(angle):
+    sphere = iga.Sphere(angle, RADIUS, (0.0, 0.0, -RADIUS))
+    scene = iga.asperity_cell(
+        sphere, size=0.2, pressure=2.0, shape="circle", contact_line="adhesion"
+    )
+    solution = iga.solve(scene)
+    found = errors(solution, exact_cell(angle, 2.0))
+    assert found.pop("sag") < 3e-3
+    assert found.pop("z_edge") < 3e-3
+    assert max(found.values()) < 1e-6
+
+
+def test_angles_near_180_degrees_tend_to_exact_contact():
+    whole = iga.solve(papers_droplet(180.0)).measures
+    last = np.inf
+    for angle in (177.0, 178.0, 179.0):
+        near = iga.solve(papers_droplet(angle)).measures
+        off = abs(near["energy"] - whole["energy"])
+        # wetting gains gamma (1 + cos(theta)) of energy per area
+        gain = (1.0 + np.cos(np.radians(angle))) * whole["A_wet"]
+        assert off == pytest.approx(gain, rel=0.1)
+        assert off < 0.5 * last
+        assert near["height"] == pytest.approx(whole["height"], abs=2e-5)
+        last = off
+    last = iga.solve(papers_droplet(179.9)).measures
+    assert last["energy"] == pytest.approx(whole["energy"], abs=1e-6)
