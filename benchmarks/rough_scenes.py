@@ -1,8 +1,8 @@
 """Thirty droplets at 180 degrees on substrates with few or no mirror planes: how each solve ends.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/rough_scenes.py`` (about ten CPU minutes); writes
-docs/results/rough_scenes.md. Hexagonal and square lattices off the droplet's middle, lists of
-spheres at random places with a least distance, of one and of two sizes.
+Run ``OMP_NUM_THREADS=1 python benchmarks/rough_scenes.py`` (about twenty CPU minutes);
+writes docs/results/rough_scenes.md. Default meshes. Hexagonal and square lattices off the droplet's
+middle, lists of spheres at random places with a least distance, of one and of two sizes.
 """
 
 from __future__ import annotations
@@ -49,8 +49,7 @@ def main() -> None:
     rows = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     solved = 0
     for name, substrate, bond in scenes():
-        mesh = iga.Discretization(elements=40 if bond < 2.0 else 50)
-        scene = iga.sessile_droplet(substrate, volume=VOLUME, gravity=bond, discretization=mesh)
+        scene = iga.sessile_droplet(substrate, volume=VOLUME, gravity=bond)
         s = iga.solve(scene, on_fail="return")
         solved += s.success
         audit = s.audit
