@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import OutputError
 from ..solids import Sphere, SphereLattice, Spheres
 from ..solver.contact_line import contact_line
-from ..terms import Contact
+from ..terms import Contact, TrimmedContactLine
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -54,7 +54,8 @@ def plot(
 
     Notes
     -----
-    Asperities that carry a part of the droplet are drawn red.
+    Asperities that carry a part of the droplet are drawn red. Where the membrane passes through
+    solids only its part outside is drawn, and its contact lines there.
 
     Raises
     ------
@@ -68,6 +69,11 @@ def plot(
     plotter.set_background("white")
     length = solution.scene.units.length
     mesh, name = _membrane(solution, color, resolution)
+    through = _passes_through(solution)
+    if through:
+        mesh, lines = _outside(solution, mesh)
+        radius = LINE * solution.scene.substrate.scale
+        plotter.add_mesh(lines.tube(radius=radius), color="#3d0c02")
     options: dict[str, Any] = {"color": "#6fa8dc"}
     if name:
         unit = solution.scene.units
@@ -79,7 +85,7 @@ def plot(
     opacity = 0.7 if traction else 1.0
     plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
     _substrate(plotter, pv, solution)
-    if solution.scene.substrate is not None and not _on_an_area(solution):
+    if solution.scene.substrate is not None and not through and not _on_an_area(solution):
         line = contact_line(solution.surface.moved(_local(solution)))
         world = solution.scene.units.to_world(line.position)
         curve = pv.lines_from_points(np.vstack([world, world[:1]]))
@@ -190,6 +196,28 @@ def _range(values: Any, unit: float) -> tuple[float, float]:
 def _on_an_area(solution: Solution) -> bool:
     """Whether the membrane lies on the solid with its inside, not with an edge."""
     return any(isinstance(term, Contact) for term in solution.scene.terms)
+
+
+def _passes_through(solution: Solution) -> bool:
+    """Whether the membrane passes through its solids."""
+    return any(isinstance(term, TrimmedContactLine) for term in solution.scene.terms)
+
+
+LINE = 0.02
+"""Thickness of contact lines on spheres over their radius."""
+
+
+def _outside(solution: Solution, mesh: Any) -> tuple[Any, Any]:
+    """The part of the membrane's mesh that bounds the liquid, and its contact lines."""
+    mesh["gap"] = solution.scene.substrate.nearest(np.asarray(mesh.points, float)).gap
+    # inside its solid the membrane may rise above it: such parts hang on nothing
+    outer = mesh.clip_scalar(scalars="gap", value=0.0, invert=False).connectivity("largest")
+    edges = outer.extract_feature_edges(
+        feature_edges=False, manifold_edges=False, non_manifold_edges=False
+    )
+    close = 1e-6 * solution.scene.substrate.scale
+    lines = edges.threshold(close, scalars="gap", invert=True)
+    return outer, lines.extract_surface(algorithm=None).strip(join=True)
 
 
 def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
