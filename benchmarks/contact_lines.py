@@ -112,9 +112,7 @@ def round_cells() -> list[str]:
                     + " | ".join(f"{e:.1e}" for e in off)
                     + f" | {rate} | {effort(s)} |"
                 )
-    return table(
-        "| degree | angle | h | phi | sag | z_edge | A_wet | rate | its | CPU s |", rows
-    )
+    return table("| degree | angle | h | phi | sag | z_edge | A_wet | rate | its | CPU s |", rows)
 
 
 def square_cells() -> list[str]:

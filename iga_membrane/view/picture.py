@@ -72,8 +72,7 @@ def plot(
     through = _passes_through(solution)
     if through:
         mesh, lines = _outside(solution, mesh)
-        radius = LINE * solution.scene.substrate.scale
-        plotter.add_mesh(lines.tube(radius=radius), color="#3d0c02")
+        plotter.add_mesh(lines, color="#3d0c02")
     options: dict[str, Any] = {"color": "#6fa8dc"}
     if name:
         unit = solution.scene.units
@@ -209,15 +208,17 @@ LINE = 0.02
 
 def _outside(solution: Solution, mesh: Any) -> tuple[Any, Any]:
     """The part of the membrane's mesh that bounds the liquid, and its contact lines."""
-    mesh["gap"] = solution.scene.substrate.nearest(np.asarray(mesh.points, float)).gap
+    solid = solution.scene.substrate
+    assert solid is not None
+    mesh["gap"] = solid.nearest(np.asarray(mesh.points, float)).gap
     # inside its solid the membrane may rise above it: such parts hang on nothing
     outer = mesh.clip_scalar(scalars="gap", value=0.0, invert=False).connectivity("largest")
     edges = outer.extract_feature_edges(
         feature_edges=False, manifold_edges=False, non_manifold_edges=False
     )
-    close = 1e-6 * solution.scene.substrate.scale
-    lines = edges.threshold(close, scalars="gap", invert=True)
-    return outer, lines.extract_surface(algorithm=None).strip(join=True)
+    lines = edges.threshold(1e-6 * solid.scale, scalars="gap", invert=True)
+    lines = lines.extract_surface(algorithm=None).strip(join=True)
+    return outer, lines.tube(radius=LINE * solid.scale)
 
 
 def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
@@ -231,7 +232,7 @@ def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
     for which, color in ((near[dry], "#d9d2c5"), (near[~dry], "#cc4125")):
         cloud = pv.PolyData(substrate.center_of(which))
         cloud["diameter"] = 2.0 * substrate.radius_of(which)
-        ball = pv.Sphere(radius=0.5, theta_resolution=40, phi_resolution=40)
+        ball = pv.Sphere(radius=0.5, theta_resolution=80, phi_resolution=80)
         balls = cloud.glyph(geom=ball, scale="diameter", orient=False)
         plotter.add_mesh(balls, color=color, ambient=0.3, smooth_shading=True)
     if substrate.base is not None:
