@@ -26,12 +26,8 @@ def table(head: str, rows: Sequence[str]) -> list[str]:
     return [head, "|---" * (head.count("|") - 1) + "|", *rows]
 
 
-def mark(solution: iga.Solution) -> str:
-    return "" if solution.success else f" {solution.status.name}"
-
-
 def effort(solution: iga.Solution) -> str:
-    return f"{solution.newton_iterations}{mark(solution)} | {solution.cpu_seconds['solve']:.2f}"
+    return f"{solution.newton_iterations} | {solution.cpu_seconds['solve']:.2f}"
 
 
 def cell(
@@ -103,7 +99,7 @@ def round_cells() -> list[str]:
             true, before = exact(angle, pressure), np.nan
             for per_radius in (4, 8, 16):
                 scene = cell(angle, pressure, degree=degree, elements=2 * per_radius)
-                s = iga.solve(scene, on_fail="return")
+                s = iga.solve(scene)
                 off = [abs(s.measures[k] - v) / UNIT[k] for k, v in true.items()]
                 rate = "" if np.isnan(before) else f"{np.log2(before / max(off)):.1f}"
                 before = max(off)
@@ -126,8 +122,7 @@ def square_cells() -> list[str]:
     ):
         meshes = (16, 24, 32, 48)
         found = [
-            iga.solve(cell(angle, 2.0, shape="square", place=place, elements=n), on_fail="return")
-            for n in meshes
+            iga.solve(cell(angle, 2.0, shape="square", place=place, elements=n)) for n in meshes
         ]
         for n, s in zip(meshes, found, strict=True):
             off = [abs(s.measures[k] - found[-1].measures[k]) / UNIT[k] for k in UNIT]
@@ -168,6 +163,9 @@ def largest_pressures() -> list[str]:
     )
 
 
+PATIENCE = iga.SolverOptions(max_cpu_s=150.0)
+
+
 def droplet(angle: float, elements: int | None = None) -> iga.Solution:
     scene = iga.sessile_droplet(
         iga.SphereLattice(angle, RADIUS, SIZE),
@@ -175,27 +173,28 @@ def droplet(angle: float, elements: int | None = None) -> iga.Solution:
         gravity=1.0,
         discretization=iga.Discretization(elements=elements),
     )
-    return iga.solve(scene, on_fail="return")
+    return iga.solve(scene, PATIENCE, on_fail="return")
+
+
+def droplet_row(angle: float, elements: int | None) -> str:
+    s = droplet(angle, elements)
+    m, foot = s.measures, s.contact["asperities"]
+    worst = max(abs(a["contact_angle"] - angle) for a in foot)
+    return (
+        f"| {angle:g} | {s.unknowns} | {s.status.name} | {len(foot)} | {m['height']:.6f} | "
+        f"{m['energy']:.6f} | {m['A_wet']:.5f} | {worst:.2f} | "
+        f"{s.contact['support_force'] / VOLUME - 1.0:+.0e} | {effort(s)} |"
+    )
 
 
 def droplets() -> list[str]:
-    rows = []
-    for angle in (180.0, 170.0, 165.0, 160.0, 155.0, 150.0, 145.0, 140.0, 135.0, 130.0, 120.0,
-                  110.0, 100.0):  # fmt: skip
-        for elements in (None, 96):
-            s = droplet(angle, elements)
-            worst = max(abs(a["contact_angle"] - angle) for a in s.contact["asperities"])
-            m = s.measures
-            rows.append(
-                f"| {angle:g} | {s.unknowns} | {s.status.name} | {s.contact['wet_solids']} | "
-                f"{m['height']:.6f} | {m['energy']:.6f} | {s.contact['wet_area']:.5f} | "
-                f"{worst:.2f} | {s.contact['support_force'] / VOLUME - 1.0:+.0e} | {effort(s)} |"
-            )
-            print(rows[-1], flush=True)
+    both = (180.0, 170.0, 165.0, 160.0, 155.0, 150.0, 145.0, 140.0, 135.0, 130.0)
+    asked = [(angle, elements) for angle in both for elements in (None, 96)]
+    asked += [(angle, None) for angle in (120.0, 110.0, 100.0)]
     return table(
         "| angle | unknowns | status | wet | height | energy | wet area | worst mean angle "
         "| forces / weight - 1 | its | CPU s |",
-        rows,
+        [droplet_row(*each) for each in asked],
     )
 
 
@@ -230,14 +229,17 @@ elements.""",
         """## Largest pressures
 
 2 % more than a level line could carry is asked for. For a round cell the level line is the exact
-solution; the line in a square cell is not level, and it carries a little less.""",
+solution; the line in a square cell is not level, but a level line in a cell of the same area gives
+the same limit to the width of the brackets.""",
         largest_pressures,
     ),
     "droplet": (
         """## The paper's droplet
 
 Volume 4 pi / 3 (R = 1), Bond number 1, spacing 0.2, eighth model; the default mesh (75 elements)
-and 96 elements. The angle is the mean along each line, the worst of all wet asperities.""",
+and 96 elements, below 130 degrees the default mesh only; 150 CPU seconds are allowed. The angle is
+the mean along each line, the worst of all wet asperities; where a solve has failed the numbers are
+those of the state that was reached.""",
         droplets,
     ),
 }
