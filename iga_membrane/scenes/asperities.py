@@ -90,7 +90,9 @@ def whole_skin(
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
-        points, _ = closed_surface(space, _ball(volume), stretch)
+        points, _ = closed_surface(
+            space, ball((3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)), stretch
+        )
         points[:, 2] += length if start == "above" else 0.0
     return Skin(space, points, directions, pressure)
 
@@ -129,9 +131,8 @@ def _meridian(pancake: Pancake, wide: float) -> Meridian:
     return Meridian(r[inside], z[inside], normal[inside])
 
 
-def _ball(volume: float) -> Meridian:
+def ball(radius: float) -> Meridian:
     """A sphere that stands on the origin."""
-    radius = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     u = np.linspace(np.pi, 0.0, 2001)[1:-1]
     normal = np.stack([np.sin(u), np.cos(u)], axis=-1)
     return Meridian(radius * np.sin(u), radius * (1.0 + np.cos(u)), normal)

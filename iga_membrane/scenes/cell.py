@@ -22,12 +22,16 @@ from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
+from .foot import adhesion
 from .liquid import MODELS, Discretization, Liquid, Mesh
 from .scene import Ramp, Scene
+from .start import gathered
 
 SHAPES = ("square", "circle")
 SUNK = 0.01
 """Depth of the start in the sphere over its radius: contact holds it from the first step."""
+SHARP = 175.0
+"""Contact angle in degrees above which the default mesh does not resolve a contact line."""
 PER_RADIUS = 16
 """Elements along the sphere's radius, by default."""
 
@@ -54,8 +58,8 @@ def asperity_cell(
     penalty : None for exact contact, else traction over depth in units of tension over squared
         radius.
     penetration_tolerance : depth over the radius beyond which a state is no success.
-    contact_line : "trimmed", the membrane passes through the sphere, as "auto" chooses too below
-        180 degrees.
+    contact_line : "trimmed", the membrane passes through the sphere; "adhesion", it lies on a
+        sphere that attracts it, for angles near 180 degrees; "auto" chooses.
 
     Raises
     ------
@@ -64,7 +68,7 @@ def asperity_cell(
     """
     liquid = liquid or Liquid()
     choice("cell.shape", shape, SHAPES)
-    choice("solver.contact_line", contact_line, ("auto", "trimmed"))
+    choice("solver.contact_line", contact_line, ("auto", "trimmed", "adhesion"))
     size = number("cell.size", size, above=0.0)
     pressure = number("cell.pressure", pressure, above=0.0)
     r, (x, y, z) = sphere.radius, sphere.center
@@ -91,9 +95,12 @@ def asperity_cell(
         )
     area = size**2 if shape == "square" else 0.25 * np.pi * size**2
     unit = (x / r, y / r, z / r)
-    drape = _drape(pressure * r / liquid.surface_tension, area / r**2, sphere.contact_angle)
+    angle = sphere.contact_angle
+    lying = (
+        angle == 180.0 or contact_line == "adhesion" or (contact_line == "auto" and angle > SHARP)
+    )
+    drape = _drape(pressure * r / liquid.surface_tension, area / r**2, angle, lying)
     local, directions = _start(shape, size / r, unit, drape, mesh)
-    lying = sphere.contact_angle == 180.0
     sunk = [0.0, 0.0, unit[2] + 1.0 - (SUNK if lying else 0.0)]
     surface = local.moved(r * (local.points + sunk))
     # the wet spot cannot pass the sphere's equator: pi r^2 (p + 2 gamma / r) = p area
@@ -118,7 +125,7 @@ def asperity_cell(
         [
             SurfaceTension(liquid.surface_tension),
             Pressure(pressure),
-            Contact(sphere, law, penetration_tolerance)
+            Contact(sphere, law, penetration_tolerance, adhesion(liquid, angle))
             if lying
             else TrimmedContactLine(liquid.surface_tension, sphere),
         ],
@@ -148,11 +155,12 @@ class _Drape:
     z: Array
 
 
-def _drape(pressure: float, area: float, contact_angle: float) -> _Drape:
+def _drape(pressure: float, area: float, contact_angle: float, lying: bool) -> _Drape:
     """Drape over the unit sphere with its top at 0 (tension 1).
 
     Outside the spot the vertical force through a circle is that of the pressure beyond it,
-    ``sin(angle) = p (R^2 - r^2) / (2 r)``; at the line ``angle = phi + theta - pi``.
+    ``sin(angle) = p (R^2 - r^2) / (2 r)``; at the line ``angle = phi + theta - pi``. The membrane
+    lies on the spot or passes through the sphere under it.
     """
     outer = np.sqrt(area / np.pi)
     hang = np.pi - np.radians(contact_angle)
@@ -166,12 +174,12 @@ def _drape(pressure: float, area: float, contact_angle: float) -> _Drape:
     fall = np.tan(0.5 * (angle[1:] + angle[:-1]))
     z = np.cos(polar) - 1.0 - np.concatenate([[0.0], np.cumsum(fall * np.diff(r))])
     inside = np.linspace(0.0, 1.0, 400)
-    if contact_angle < 180.0:
+    if not lying:
         # through the sphere the membrane goes on as it pleases; its parameter must be smooth
         dome = z[0] + 0.5 * spot * np.tan(slope) * (1.0 - inside**2)
         r, z = np.concatenate([spot * inside, r[1:]]), np.concatenate([dome, z[1:]])
         even = np.linspace(0.0, outer, 8001)
-        closer = _gathered(even, spot, 1.0 - float(np.cos(slope)) ** 1.5)
+        closer = gathered(even, spot, 1.0 - float(np.cos(slope)) ** 1.5)
         return _Drape(even / outer, closer, np.interp(closer, r, z))
     cap = polar * inside
     r, z = np.concatenate([np.sin(cap), r[1:]]), np.concatenate([np.cos(cap) - 1.0, z[1:]])
@@ -183,17 +191,6 @@ def _drape(pressure: float, area: float, contact_angle: float) -> _Drape:
     return _Drape(even, np.interp(share, walked, r), np.interp(share, walked, z))
 
 
-def _gathered(radius: Array, spot: float, part: float) -> Array:
-    """Radii drawn towards the contact line: their steps there are shorter by ``part``, as a steep
-    membrane's are longer than their projection, and somewhat more."""
-    away = (radius - spot) / (GATHERED * spot)
-    middle = radius**2 / (radius**2 + (0.2 * spot) ** 2)
-    rim = (1.0 - (radius / radius[-1]) ** 4) ** 2
-    return radius - part * (radius - spot) * np.exp(-(away**2)) * middle * rim
-
-
-GATHERED = 0.65
-"""Width, over the spot's radius, of the zone of shorter steps on either side of its edge."""
 FINE = 0.6
 """Part of the elements over the wet spot and its surroundings."""
 STEEPEST = float(np.radians(87.0))

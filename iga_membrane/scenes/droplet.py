@@ -73,8 +73,9 @@ def sessile_droplet(
         units of tension over squared length, length that of a ball of the volume.
     penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
         that exact contact leaves at most and beyond which a state is no success.
-    contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", the membrane
-        passes through the solid (spheres, asperities); "auto" chooses.
+    contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
+        through the asperities; "adhesion", it lies on asperities that attract it, for angles near
+        180 degrees; "auto" chooses.
 
     Raises
     ------

@@ -10,7 +10,8 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
-from ..splines import Grading, points_of
+from ..splines import Grading, pillow_space, points_of
+from ..surface.closed import Stretch, closed_surface
 from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
@@ -24,7 +25,7 @@ from ..terms import (
     TrimmedContactLine,
 )
 from ..terms.term import AnySolid
-from .asperities import estimated_foot, smallest_model, whole_skin
+from .asperities import ball, estimated_foot, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
 
@@ -63,20 +64,26 @@ class Foot:
     predictor: Sequence[Term] = ()
 
 
-CONTACT_LINES = ("auto", "conforming", "trimmed")
+CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
 
 
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
-    refused = "trimmed" if isinstance(solid, Plane) else "conforming"
-    if way == refused and not isinstance(solid, Sphere):
+    refused: tuple[str, ...] = ("trimmed", "adhesion")
+    if isinstance(solid, (SphereLattice, Spheres)):
+        refused = ("conforming",)
+    elif isinstance(solid, Sphere):
+        refused = ("adhesion",)
+    if way in refused:
         raise SceneError(
-            f'solver.contact_line = "{way}": not available here; a plane\'s contact line is '
-            '"conforming", those on asperities are "trimmed", a sphere has either; "auto" knows'
+            f'solver.contact_line = "{way}": not available here; on a plane it is "conforming", on '
+            'one sphere also "trimmed", on asperities "trimmed", or "adhesion" near 180 degrees; '
+            '"auto" knows'
         )
-    line = isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0
-    if line and way != "trimmed":
+    if isinstance(solid, Sphere) and way == "trimmed":
+        return _through_one(parts)
+    if isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0:
         return _on_a_line(parts)
     exact = parts.law.penalty is None and parts.start is None
     return _on_the_plane(parts) if isinstance(solid, Plane) and exact else _on_an_area(parts)
@@ -140,7 +147,55 @@ def _on_an_area(parts: Question) -> Foot:
     foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
+    most = float(np.max(substrate.contact_angle))
+    if parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP):
+        if most > least:
+            raise SceneError(
+                f"substrate.contact_angle: {least:g} to {most:g} degrees: adhesion has one angle "
+                "for all spheres; give one, or smaller ones"
+            )
+        return replace(foot, terms=[replace(parts.law, adhesion=adhesion(parts.liquid, least))])
     return _through(foot, parts, skin.pressure)
+
+
+SHARP = 172.0
+"""Contact angle in degrees above which a line on an asperity is not resolved by the default mesh:
+the membrane leaves so flat that lying on the sphere, which attracts it, is the better model."""
+
+
+def adhesion(liquid: Liquid, contact_angle: float) -> float:
+    """Energy per wetted area, Young and Dupre's ``gamma (1 + cos(theta))``."""
+    return liquid.surface_tension * (1.0 + float(np.cos(np.radians(contact_angle))))
+
+
+def _through_one(parts: Question) -> Foot:
+    """A ball that passes through a sphere: without gravity its outer part is the drop."""
+    solid, scale = parts.substrate, parts.scale
+    assert isinstance(solid, Sphere)
+    if (
+        solid.contact_angle == 180.0
+        or parts.law.penalty is not None
+        or parts.start is not None
+        or parts.asked.space != "bspline"
+    ):
+        raise SceneError(
+            'solver.contact_line = "trimmed": on one sphere it needs an angle below 180 degrees, '
+            'the scene\'s own start, no penalty and space "bspline"'
+        )
+    mesh, radius = parts.asked.mesh(degree=2, elements=BALL_ELEMENTS), solid.radius / scale.length
+    polar, cap = drop_on_sphere(solid.contact_angle, radius, BALL)
+    space = pillow_space(mesh.degree, mesh.elements)
+    points, directions = closed_surface(space, ball(cap.radius), Stretch())
+    # the line lies 1 - cos(polar) radii under the sphere's top, at the cap's lowest circle
+    lowest = -2.0 * radius * np.sin(0.5 * polar) ** 2
+    points[:, 2] += lowest - cap.radius * (1.0 + np.cos(cap.turn))
+    line = TrimmedContactLine(parts.liquid.surface_tension, solid)
+    surface = Surface(space, scale.to_world(points))
+    return Foot(surface, _sector(mesh, parts.bond), mesh, [line], directions=directions)
+
+
+BALL_ELEMENTS = 48
+"""From the middle of such a ball's foot to its widest place."""
 
 
 def _through(foot: Foot, parts: Question, pressure: float) -> Foot:

@@ -313,8 +313,6 @@ def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
 
 def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, sheet = tables["liquid"], tables["sheet"]
-    if tables["solver"].get("contact_line") == "trimmed":
-        raise _later('solver.contact_line = "trimmed" on a sheet')
     particles = data.get("particle", [])
     if len(particles) > 1:
         raise _later(f"a sheet with {len(particles)} [[particle]] tables")
@@ -335,6 +333,7 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
         volume=sheet.get("volume"),
         liquid_weight=sheet.get("liquid_weight", False),
         discretization=Discretization(**tables["discretization"]),
+        contact_line=tables["solver"].get("contact_line", "auto"),
     )
 
 

@@ -26,12 +26,25 @@ from ..surface.ring import (
 from ..surface.shapes import sheet as flat_square
 from ..surface.supports import Fixed, Sector, Sliding, Support
 from ..surface.surface import Surface
-from ..terms import Gravity, Pressure, Scale, SphereContactLine, SurfaceTension, Term, Volume
+from ..terms import (
+    Gravity,
+    Pressure,
+    Scale,
+    SphereContactLine,
+    SurfaceTension,
+    Term,
+    TrimmedContactLine,
+    Volume,
+)
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import FreeEdge, Ramp, Scene
-from .start import check_net
+from .sheet_through import sheet_through
+from .start import check_net, funnel_profile
 
 BOUNDARIES = ("square", "circle")
+CONTACT_LINES = ("auto", "conforming", "trimmed")
+THROUGH = {"degree": 3, "elements": 40}
+"""Mesh of a sheet that passes through its particle."""
 
 
 def liquid_sheet(
@@ -46,6 +59,7 @@ def liquid_sheet(
     liquid_weight: bool = False,
     discretization: Discretization | None = None,
     start: Surface | None = None,
+    contact_line: str = "auto",
 ) -> Scene:
     """Sheet pinned on a rim in z = 0; without a particle a film or a cap.
 
@@ -59,6 +73,8 @@ def liquid_sheet(
     volume : signed liquid volume below z = 0 less the wetted cap.
     liquid_weight : whether the pressure along the sheet is ``p0 - rho g z``.
     start : a surface of the same space to start from; it also chooses among several equilibria.
+    contact_line : "conforming", the membrane ends on it; "trimmed", the membrane covers the whole
+        rim and passes through the particle; "auto" is conforming.
 
     Raises
     ------
@@ -68,7 +84,11 @@ def liquid_sheet(
     """
     liquid = liquid or Liquid()
     choice("sheet.boundary", boundary, BOUNDARIES)
-    mesh = (discretization or Discretization()).mesh(elements=8 if boundary == "square" else 20)
+    choice("solver.contact_line", contact_line, CONTACT_LINES)
+    through = contact_line == "trimmed"
+    mesh = (discretization or Discretization()).mesh(
+        **(THROUGH if through else {"elements": 8 if boundary == "square" else 20})
+    )
     size = number("sheet.size", size, above=0.0)
     gravity = number("gravity.acceleration", gravity, least=0.0)
     if pressure is not None and volume is not None:
@@ -82,8 +102,16 @@ def liquid_sheet(
         )
     terms: list[Term] = [SurfaceTension(gamma)]
     supports: list[Support] = [sector]
-    if particle is None:
+    if through and (particle is None or tangent or start is not None or mesh.space != "bspline"):
+        raise SceneError(
+            'solver.contact_line = "trimmed": needs a particle below 180 degrees, the scene\'s own '
+            'start and space "bspline"'
+        )
+    if particle is None or through:
         supports += [Fixed(edge) for edge in _rim_edges(boundary)]
+        if particle is not None:
+            _check_place(particle, size, boundary)
+            terms.append(TrimmedContactLine(gamma, particle))
     else:
         _check_place(particle, size, boundary)
         terms.append(SphereContactLine(gamma, particle))
@@ -111,11 +139,15 @@ def liquid_sheet(
             "volume": volume,
             "liquid_weight": liquid_weight,
             "discretization": Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
+            "contact_line": contact_line,
         }
         return liquid_sheet(**given | changed)
 
-    ramp = None
-    if start is None:
+    ramp, directions = None, None
+    if through and particle is not None:
+        curvature = (pressure or 0.0) / gamma
+        surface, directions = sheet_through(particle, 0.5 * size, boundary, mesh, curvature)
+    elif start is None:
         surface = _start(particle, size, boundary, mesh, (pressure or 0.0) / gamma, volume)
         if particle is not None:
             own = particle
@@ -139,8 +171,9 @@ def liquid_sheet(
         terms,
         supports,
         scale=Scale(length, gamma),
-        grading=Grading() if particle is None else _grading(surface, size),
+        grading=Grading() if particle is None or through else _grading(surface, size),
         ramp=ramp,
+        directions=directions,
         substrate=particle,
         kind="liquid_sheet",
         particle_pull=gravity,
@@ -255,23 +288,13 @@ def _funnel(
 ) -> Surface:
     """The sheet of small slopes, ``z = z_a + B log(r / a) + p (r^2 - a^2) / 4 gamma``, from the
     circle where it meets the sphere at Young's angle to the rim."""
-    r, (x, y, z) = particle.radius, particle.center
-    rim, quarter = (half - max(abs(x), abs(y))) / r, 0.25 * curvature * r
-    polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
-    polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
-    a, depth = np.sin(polar), z / r + np.cos(polar)
-    log = -(depth + quarter * (rim**2 - a**2)) / np.log(rim / a)
-    slope = np.arctan(log / a + 2.0 * quarter * a)
-    excess = np.pi - np.radians(particle.contact_angle) - polar - slope
-    falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
-    # the last crossing is the stable one; without any, the nearest to one
-    k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
+    rim, a, height, _ = funnel_profile(particle, half, curvature)
+    x, y, _ = particle.center
     ring = circle(space.bases[0])
     outer = half * ring if boundary == "circle" else half * square(space.bases[0])
-    inner = np.array([x, y, 0.0]) + r * a[k] * ring
+    inner = np.array([x, y, 0.0]) + a * ring
     points, matrix = meridian_interpolation(space)
-    at = a[k] + (rim - a[k]) * points
-    sag = r * (depth[k] + log[k] * np.log(at / a[k]) + quarter * (at**2 - a[k] ** 2))
+    sag = height(a + (rim - a) * points)
     values = np.stack([1.0 - points, points, sag], axis=1)
     first, second, height = np.linalg.solve(matrix, values).T[:, :, None]
     up = np.array([0.0, 0.0, 1.0])

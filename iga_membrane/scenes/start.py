@@ -8,12 +8,14 @@ volume the one with the least energy is close enough to any sessile drop for New
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
+from ..solids import Sphere
 from ..splines import Space
 from ..splines.quadrature import gauss
 from ..surface.surface import Surface
@@ -135,3 +137,41 @@ def check_net(start: Surface, asked: Space) -> None:
             f"start: control net {given.net_shape} of degree {given.degree} given, "
             f"{asked.net_shape} of degree {asked.degree} expected from the discretization"
         )
+
+
+def gathered(radius: Array, spot: float, part: float) -> Array:
+    """Radii drawn towards the contact line: their steps there are shorter by ``part``, as a steep
+    membrane's are longer than their projection, and somewhat more."""
+    away = (radius - spot) / (GATHERED * spot)
+    middle = radius**2 / (radius**2 + (0.2 * spot) ** 2)
+    rim = (1.0 - (radius / radius[-1]) ** 4) ** 2
+    return radius - part * (radius - spot) * np.exp(-(away**2)) * middle * rim
+
+
+GATHERED = 0.65
+"""Width, over the spot's radius, of the zone of shorter steps on either side of its edge."""
+
+
+def funnel_profile(
+    particle: Sphere, half: float, curvature: float
+) -> tuple[float, float, Callable[[Array], Array], float]:
+    """The sheet of small slopes round a particle: its rim's nearest distance from the particle's
+    axis, the radius of its line, its height at radii from the axis, its slope at the line."""
+    r, (x, y, z) = particle.radius, particle.center
+    rim, quarter = (half - max(abs(x), abs(y))) / r, 0.25 * curvature * r
+    polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
+    polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
+    a, depth = np.sin(polar), z / r + np.cos(polar)
+    log = -(depth + quarter * (rim**2 - a**2)) / np.log(rim / a)
+    slope = np.arctan(log / a + 2.0 * quarter * a)
+    excess = np.pi - np.radians(particle.contact_angle) - polar - slope
+    falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
+    # the last crossing is the stable one; without any, the nearest to one
+    k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
+    line, low, b, steep = float(a[k]), float(depth[k]), float(log[k]), float(slope[k])
+
+    def height(radius: Array) -> Array:
+        at = np.asarray(radius) / r
+        return np.asarray(r * (low + b * np.log(at / line) + quarter * (at**2 - line**2)))
+
+    return r * rim, r * line, height, float(np.tan(steep))

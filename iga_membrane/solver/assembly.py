@@ -133,9 +133,8 @@ class Assembly:
         table = sector_table(surface.space, scene.sector, points)
         area = vary.element_points(table, surface.points).area * table.weights
         elements, _ = sector_elements(surface.space, scene.sector)
-        return ContactSet(
-            term.solid, table, area, term.penalty, term.depth, surface.space, elements
-        )
+        law = term.penalty, term.depth, term.adhesion
+        return ContactSet(term.solid, table, area, *law, surface.space, elements)
 
     def _trim(self, scene: Scene) -> Trim | None:
         """The scene's contact lines inside the membrane."""
@@ -313,6 +312,8 @@ class Assembly:
         area = sum(vary.energies(rows, part, [])[0] for rows, part in self._parts(points, at))
         if self.trim is not None:
             return area, *self.trim.wetting(points)
+        if self.contact is not None and self.contact.adhesion:
+            return area, -self.contact.gained(points), 0.0
         return (
             area,
             sum(t.energy(edge, points, t.strength, none) for t, edge in self.lines),

@@ -90,10 +90,7 @@ def audit(
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     scatter(total, absolute, motion, table.functions, force)
     if contact is not None:
-        # tractions push along the solid's normals at the contact points
-        x = contact.table.values @ surface.points[contact.table.functions]
-        push = contact.solid.nearest(x).normal * (contact.touch(surface.points).traction
-                                                  * contact.area)[..., None]  # fmt: skip
+        push = contact.push(contact.touch(surface.points))
         pull = -contact.table.values.transpose(0, 2, 1) @ push
         scatter(total, absolute, motion, contact.table.functions, pull)
     lines = [t for t in terms if isinstance(t, LineTerm)]

@@ -189,7 +189,7 @@ def _overload(scene: Scene, assembly: Assembly, multipliers: Array) -> str:
 def _reaches_boundary(scene: Scene, surface: Surface) -> bool:
     """Whether a sheet's contact line has come to its rim."""
     solid = sphere_of(scene)
-    if scene.kind != "liquid_sheet" or solid is None:
+    if scene.kind != "liquid_sheet" or solid is None or scene.directions is not None:
         return False
     inner, rim = surface.net[:, 0], surface.net[:, -1]
     width = float(np.linalg.norm(rim - inner, axis=1).min())
@@ -309,7 +309,7 @@ def _contact(
         forces = vertical_forces(at, body, line.gamma, line.contact_angle)
         support = forces.push - forces.line
     else:
-        support = -float(pull_on_sphere(assembly, surface, result.multipliers).total[2])
+        support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
     rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))

@@ -34,6 +34,8 @@ SAMPLES = 12
 """Points along an element at which the membrane's depth is sampled."""
 LIFTS = 10
 """How often the contact points are lifted at most."""
+RANGE = 1.0
+"""Range of adhesion over the gap at which a membrane has left the solid after one element."""
 SETTLED = 1e-6
 """Gap of an active point over the contact length that counts as none."""
 
@@ -46,10 +48,15 @@ class Touch:
     ----------
     at : nearest surfaces at the contact points (elements, points).
     traction : (elements, points) pressure of the solid on the membrane, per reference area.
+    gain : (elements, points) part of the adhesion that is gained; pull, rise : its first and second
+        derivative by the gap, times the adhesion.
     """
 
     at: Nearest
     traction: Array
+    gain: Array
+    pull: Array
+    rise: Array
 
 
 class ContactSet:
@@ -62,6 +69,7 @@ class ContactSet:
     area : (elements, points) reference area of each contact point.
     penalty : traction per depth, or None for exact contact.
     depth : allowed depth over the contact length, for exact contact.
+    adhesion : energy per area, for exact contact.
     space : of the membrane, and elements : (elements,) of it, to sample the depth.
 
     Attributes
@@ -79,12 +87,13 @@ class ContactSet:
         area: Array,
         penalty: float | None,
         depth: float,
+        adhesion: float,
         space: Space,
         elements: Index,
     ) -> None:
         self.solid, self.table, self.area = solid, table, area
         self.elements = elements
-        self._space, self._depth = space, depth
+        self._space, self._depth, self.adhesion = space, depth, adhesion
         self._lift = np.zeros(area.shape)
         self._lifts = LIFTS
         self.length = min(solid.scale, 1.0)
@@ -92,6 +101,9 @@ class ContactSet:
         self.multipliers: Array = np.zeros(area.shape)
         self._size = area.sum(axis=1)
         self._hard = HARD * self._size[:, None]
+        # a membrane that leaves at the angle psi, 1 - cos(psi) = adhesion, is so far off after an
+        # element
+        self._range = RANGE * np.sqrt(2.0 * adhesion * self._size)[:, None]
         self._soft = np.maximum(SOFT * self.length**2, self._hard)
         if isinstance(solid, Plane):
             self._soft = self._hard / HARDER  # a plane has no length; the start lies on it
@@ -110,31 +122,48 @@ class ContactSet:
         """Gaps and tractions for control points (count, 3)."""
         at = self.solid.nearest(self.table.values @ points[self.table.functions])
         gap = at.gap - self._lift
-        return Touch(at, np.maximum(self.multipliers - gap / self.delta, 0.0))
+        traction = np.maximum(self.multipliers - gap / self.delta, 0.0)
+        if not self.adhesion:
+            none = np.zeros_like(gap)
+            return Touch(at, traction, none, none, none)
+        s = np.clip(gap / self._range, 0.0, 1.0)
+        inside = (s > 0.0) & (s < 1.0)
+        pull = self.adhesion / self._range * 4.0 * s * (1.0 - s**2)
+        rise = self.adhesion / self._range**2 * (4.0 - 12.0 * s**2) * inside
+        return Touch(at, traction, (1.0 - s**2) ** 2, pull, rise)
+
+    def gained(self, points: Array) -> float:
+        """Energy of adhesion that is gained (one sector)."""
+        return float(self.adhesion * (self.touch(points).gain * self.area).sum())
+
+    def push(self, touch: Touch) -> Array:
+        """(elements, points, 3) forces of the solid on the membrane."""
+        load = (touch.traction - touch.pull) * self.area
+        return np.asarray(load[..., None] * touch.at.normal)
 
     def energy(self, touch: Touch) -> float:
         """Energy of the penalty or of the augmented Lagrangian."""
         square = touch.traction**2 - self.multipliers**2
-        return float(0.5 * (self.delta * square * self.area).sum())
+        held = 0.5 * (self.delta * square * self.area).sum()
+        return float(held - self.adhesion * (touch.gain * self.area).sum())
 
     def forces(self, touch: Touch, table: Table | None = None) -> Array:
         """(elements, local, 3) derivative of the energy by the local control points, or by the
         local functions of another table at the contact points."""
         table = self.table if table is None else table
-        push = -(touch.traction * self.area)[..., None] * touch.at.normal
-        return np.asarray(table.values.transpose(0, 2, 1) @ push)
+        return np.asarray(table.values.transpose(0, 2, 1) @ -self.push(touch))
 
     def hessian(
         self, touch: Touch, directions: Array, table: Table | None = None
     ) -> tuple[Index, Array]:
         """Elements in contact and the second derivative along directions of the table's rows."""
         table = self.table if table is None else table
-        near = np.flatnonzero((touch.traction > 0).any(axis=1))
+        near = np.flatnonzero((touch.traction + np.abs(touch.rise) > 0).any(axis=1))
         rows, at = table.values[near], touch.at
         d = directions[table.functions[near]]
-        bent = self.area[near] * touch.traction[near] * at.bend[near]
+        bent = self.area[near] * (touch.traction - touch.pull)[near] * at.bend[near]
         soft = np.broadcast_to(self.delta, self.area.shape)[near]
-        stiff = self.area[near] * (touch.traction[near] > 0) / soft
+        stiff = self.area[near] * ((touch.traction[near] > 0) / soft + touch.rise[near])
         u = rows * (at.normal[near] @ d.transpose(0, 2, 1))
         blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
         blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))

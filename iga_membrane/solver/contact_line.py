@@ -12,6 +12,7 @@ from ..splines.quadrature import gauss
 from ..splines.space import EDGES
 from ..surface.surface import Surface
 from ..terms import BodyDensity
+from .trim import Trim
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +67,39 @@ def contact_line(
     angle = np.arctan2(tilt, np.einsum("ki,ki->k", k.normal, np.broadcast_to(up, k.normal.shape)))
     weights = speed * (basis.sizes[:, None] * w).ravel()
     return ContactLine(k.position, tangent, conormal, angle, weights)
+
+
+def trimmed_line(trim: Trim, surface: Surface, images: list[Array]) -> ContactLine:
+    """Line geometry on a sphere that the membrane passes through, whole and counterclockwise.
+
+    Parameters
+    ----------
+    images : matrices (3, 3) that carry the sector to each of its images.
+    """
+    line = trim.on_line(surface.points)
+    normal = (line.m / line.area[..., None]).reshape(-1, 3)
+    solid = line.at.normal.reshape(-1, 3)
+    tangent = line.tangent.reshape(-1, 3)
+    speed = np.linalg.norm(tangent, axis=1)
+    x = line.x.reshape(-1, 3)
+    arc = speed * line.table.weights.ravel()
+    turn = np.cross(x - trim.solid.center_of(line.at.which).reshape(-1, 3), tangent)[:, 2]
+    tangent = tangent * (np.sign(turn) / speed)[:, None]
+    conormal = np.cross(tangent, normal)
+    inward = np.einsum("ki,ki->k", conormal, solid)
+    conormal = np.where((inward > 0)[:, None], -conormal, conormal)
+    tilt = np.linalg.norm(np.cross(normal, solid), axis=1)
+    angle = np.arctan2(tilt, np.einsum("ki,ki->k", normal, solid))
+
+    def whole(vectors: Array) -> Array:
+        return np.concatenate([vectors @ m for m in images])
+
+    around = [np.sign(np.linalg.det(m)) * tangent @ m for m in images]
+    copies = len(images)
+    return ContactLine(
+        whole(x), np.concatenate(around), whole(conormal), np.tile(angle, copies),
+        np.tile(arc, copies),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -115,16 +115,16 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
 
     Notes
     -----
-    At 180 degrees the membrane follows the sphere in its wet spot with curvature ``2 / r``, so the
-    traction there is ``p + 2 gamma / r`` and the spot's projected area the force over it: far more
-    accurate than counting points.
+    A round spot whose edge the membrane leaves at ``psi = pi - theta`` carries
+    ``pi a^2 p + 2 pi a gamma sin(phi - psi)``, ``a = r sin(phi)``; at 180 degrees its projected
+    area is the force over ``p + 2 gamma / r``. That is far more accurate than counting points.
     """
     contact = assembly.contact
     assert contact is not None
     touch = contact.touch(surface.points)
-    wet = touch.traction > 0
+    wet = (touch.traction > 0) | (touch.pull > 0)
     x = (contact.table.values @ surface.points[contact.table.functions])[wet]
-    push = -(touch.traction * contact.area)[wet][:, None] * touch.at.normal[wet]
+    push = -contact.push(touch)[wet]
     images = mirrors(scene.sector)
     places = np.concatenate([x @ m for m in images])
     pushes = np.concatenate([push @ m for m in images])
@@ -140,16 +140,29 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
     size = np.linalg.norm(forces, axis=1)
     level = centers[:, 2] + np.where(on_sphere, radii, 0.0)
     pressure = -(body.constant + body.gradient[2] * level)
-    projected = size / (pressure + np.where(on_sphere, 2.0 * assembly.tension / radii, 0.0))
-    share = np.clip(projected / (np.pi * radii**2), 0.0, 1.0)
-    areas = np.where(on_sphere, 2.0 * np.pi * np.where(on_sphere, radii, 0.0) ** 2, 0.0) * (
-        1.0 - np.sqrt(1.0 - share)
-    )
-    areas = np.where(on_sphere, areas, projected)
+    psi = np.arccos(1.0 - contact.adhesion / assembly.tension)
+    carried = np.where(forces[:, 2] > 0, -size, size) / (np.pi * assembly.tension)
+    share = np.where(on_sphere, _share(pressure / assembly.tension, radii, carried, psi), 0.0)
+    projected = np.where(on_sphere, share * np.pi * radii**2, size / pressure)
+    ball = np.where(on_sphere, radii, 0.0)
+    areas = np.where(on_sphere, 2.0 * np.pi * ball**2 * (1.0 - np.sqrt(1.0 - share)), projected)
     polar = np.arcsin(np.sqrt(share))
-    heights = centers[:, 2] + np.where(on_sphere, radii, 0.0) * np.cos(polar)
-    angles = np.full(len(which), 180.0)
+    heights = centers[:, 2] + ball * np.cos(polar)
+    angles = np.full(len(which), 180.0 - np.degrees(psi))
     return Footing(which, centers, forces, radii, projected, areas, polar, heights, angles)
+
+
+def _share(pressure: Array, radii: Array, carried: Array, psi: float) -> Array:
+    """(k,) projected area of spots over that of their spheres, ``sin(phi)^2``, by what they carry
+    over ``pi gamma``."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        half = 0.5 * pressure * radii
+        # half (1 - cos 2 phi) + cos psi - cos(2 phi - psi) = carried / r
+        size = np.hypot(half + np.cos(psi), np.sin(psi))
+        turn = np.arctan2(np.sin(psi), half + np.cos(psi))
+        level = (half + np.cos(psi) - carried / radii) / size
+        twice = turn + np.arccos(np.clip(level, -1.0, 1.0))
+    return np.asarray(np.clip(np.sin(0.5 * twice) ** 2, 0.0, 1.0))
 
 
 def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:

@@ -15,14 +15,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..splines import points_of
+from ..surface.sector import mirrors
 from ..surface.surface import Surface
 from ..terms import BodyDensity
 from .assembly import Assembly
-from .contact_line import ContactLine, contact_line
+from .contact_line import ContactLine, contact_line, trimmed_line
+from .footing import footing
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +70,28 @@ class Pull:
     pressure: Array
 
 
-def pull_on_sphere(assembly: Assembly, surface: Surface, multipliers: Array) -> Pull:
+def line_on_sphere(scene: Scene, assembly: Assembly, surface: Surface) -> ContactLine:
+    """The whole contact line on the sphere of a scene."""
+    if assembly.trim is not None:
+        return trimmed_line(assembly.trim, surface, mirrors(scene.sector))
+    assert isinstance(scene.substrate, Sphere)
+    return contact_line(surface, solid=scene.units.local_sphere(scene.substrate))
+
+
+def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array) -> Pull:
     """Force on the sphere that carries the membrane's line."""
+    if assembly.trim is not None:
+        own = assembly.density(multipliers)
+        trim, slope = assembly.trim, np.array(own.gradient)
+        pressed = np.zeros(3)
+        for k in range(3):
+
+            def push(x: Array, n: Array, which: Index, k: int = k) -> Array:
+                return np.asarray((own.constant + x @ slope) * n[..., k])
+
+            pressed[k] = trim.cap(surface.points, push)
+        total = footing(scene, assembly, surface, own).total
+        return Pull(total, assembly.whole(pressed))
     (term, edge), body = assembly.lines[0], assembly.density(multipliers)
     points = surface.points
     moment = term.energy(edge, points, 0.0, BodyDensity(1.0))
@@ -122,8 +144,8 @@ def particle_forces(
     particle, scale = scene.substrate, scene.units
     if scene.kind != "liquid_sheet" or not isinstance(particle, Sphere):
         return ()
-    pull = pull_on_sphere(assembly, surface, multipliers)
-    line = contact_line(surface, solid=scale.local_sphere(particle))
+    pull = pull_on_sphere(scene, assembly, surface, multipliers)
+    line = line_on_sphere(scene, assembly, surface)
     up, g, rho = np.array([0.0, 0.0, 1.0]), scene.particle_pull, scene.liquid_density
     pressed = pull.pressure * scale.force
     if g and not assembly.body.gradient[2]:

@@ -11,12 +11,20 @@ from ..arrays import Array
 from ..scenes.scene import Scene
 from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
-from ..terms import BodyDensity, Gravity, Scale, SphereContactLine, SurfaceTension, Volume
+from ..terms import (
+    BodyDensity,
+    Gravity,
+    Scale,
+    SphereContactLine,
+    SurfaceTension,
+    TrimmedContactLine,
+    Volume,
+)
 from .apparent import apparent_angle, cassie_baxter_angle
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
 from .footing import Footing, footing
-from .forces import pull_on_sphere, volume_over_cone
+from .forces import line_on_sphere, pull_on_sphere, volume_over_cone
 
 
 def measures(
@@ -41,7 +49,7 @@ def measures(
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
-    elif assembly.contact is not None or assembly.trim is not None:
+    elif scene.kind == "sessile_droplet" and (assembly.contact or assembly.trim):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
         values |= _droplet(scene, surface, values["A_wet"], body, scale)
@@ -238,14 +246,14 @@ def _sheet(
     scale, solid = scene.units, sphere_of(scene)
     if solid is None:
         return {"sag": -float(_farthest(surface, lambda x: -x[..., 2])[2]) * scale.length}
-    forces = pull_on_sphere(assembly, surface, multipliers)
-    line = contact_line(surface, solid=solid)
+    forces = pull_on_sphere(scene, assembly, surface, multipliers)
+    line = line_on_sphere(scene, assembly, surface)
     length = float(line.arc.sum())
     away = line.position - np.array(solid.center)
     radius = np.linalg.norm(away[:, :2], axis=1)
     polar = float(np.arctan2(radius, away[:, 2]) @ line.arc) / length
     height = solid.radius - float(away[:, 2] @ line.arc) / length
-    gamma = assembly.lines[0][0].gamma
+    gamma = assembly.tension
     return {
         "phi_deg": float(np.degrees(polar)),
         "psi_deg": 180.0 - solid.contact_angle - float(np.degrees(polar)),
@@ -263,8 +271,12 @@ def _sheet(
 
 def sphere_of(scene: Scene) -> Sphere | None:
     """The sphere on which the membrane's line lies, in the scene's scale."""
-    lines = (t for t in scene.local_terms() if isinstance(t, SphereContactLine))
-    return next((t.sphere for t in lines), None)
+    for term in scene.local_terms():
+        if isinstance(term, SphereContactLine):
+            return term.sphere
+        if isinstance(term, TrimmedContactLine) and isinstance(term.solid, Sphere):
+            return term.solid
+    return None
 
 
 def _film(surface: Surface, body: BodyDensity, scale: Scale) -> dict[str, float]:

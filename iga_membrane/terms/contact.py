@@ -1,4 +1,8 @@
-"""Contact without a contact line: the membrane may lie on a solid but not in it."""
+"""Contact without a contact line: the membrane may lie on a solid but not in it.
+
+Just below 180 degrees the solid also attracts it: wetting an area gains ``gamma (1 + cos(theta))``
+of energy, here by a smooth well whose range is shorter than the mesh resolves.
+"""
 
 from __future__ import annotations
 
@@ -20,18 +24,22 @@ class Contact(Term):
         the membrane sink in.
     depth : how deep the membrane may dip into the solid between contact points, over the radius
         of the smallest sphere (plane: over the scene's length).
+    adhesion : energy per wetted area, ``gamma (1 + cos(theta))``.
     """
 
     solid: Plane | Sphere | SphereLattice | Spheres
     penalty: float | None = None
     depth: float = 1e-2
+    adhesion: float = 0.0
     name = "contact"
 
     def __post_init__(self) -> None:
         if self.penalty is not None:
             number("solver.penalty", self.penalty, above=0.0)
         number("solver.penetration_tolerance", self.depth, above=0.0)
+        number("adhesion", self.adhesion, least=0.0)
 
     def scaled(self, scale: Scale) -> Contact:
         eps = None if self.penalty is None else self.penalty * scale.length**2 / scale.tension
-        return Contact(scale.local_solid(self.solid), eps, self.depth)
+        adhesion = self.adhesion / scale.tension
+        return Contact(scale.local_solid(self.solid), eps, self.depth, adhesion)

@@ -183,3 +183,32 @@ def test_a_penalty_is_refused_where_there_are_contact_lines():
         iga.sessile_droplet(lattice, volume=4.0, gravity=1.0, contact_line="conforming")
     with pytest.raises(iga.SceneError, match="trimmed"):
         iga.sessile_droplet(iga.Plane(150.0), volume=4.0, contact_line="trimmed")
+
+
+@pytest.mark.parametrize("angle", [172.0, 176.0, 179.0, 179.9])
+def test_adhesion_near_180_degrees_agrees_with_the_closed_form(angle):
+    sphere = iga.Sphere(angle, RADIUS, (0.0, 0.0, -RADIUS))
+    scene = iga.asperity_cell(
+        sphere, size=0.2, pressure=2.0, shape="circle", contact_line="adhesion"
+    )
+    solution = iga.solve(scene)
+    found = errors(solution, exact_cell(angle, 2.0))
+    assert found.pop("sag") < 3e-3
+    assert found.pop("z_edge") < 3e-3
+    assert max(found.values()) < 1e-6
+
+
+def test_angles_near_180_degrees_tend_to_exact_contact():
+    whole = iga.solve(papers_droplet(180.0)).measures
+    last = np.inf
+    for angle in (177.0, 178.0, 179.0):
+        near = iga.solve(papers_droplet(angle)).measures
+        off = abs(near["energy"] - whole["energy"])
+        # wetting gains gamma (1 + cos(theta)) of energy per area
+        gain = (1.0 + np.cos(np.radians(angle))) * whole["A_wet"]
+        assert off == pytest.approx(gain, rel=0.1)
+        assert off < 0.5 * last
+        assert near["height"] == pytest.approx(whole["height"], abs=2e-5)
+        last = off
+    last = iga.solve(papers_droplet(179.9)).measures
+    assert last["energy"] == pytest.approx(whole["energy"], abs=1e-6)
