@@ -47,7 +47,8 @@ def plot(
     color : "mean_curvature" (exact, from the spline), "pressure" or "none".
     size : of the picture in pixels.
     resolution : points along each direction of the patch.
-    traction : whether to draw the pull of the membrane on the solid along the contact line.
+    traction : whether to draw the pull of the membrane on the solid along the contact line on which
+        it ends.
     view : direction from the middle of the picture to the eye, in the scene's frame.
     zoom : enlargement.
     focus : world point in the middle of the picture; the membrane's middle if omitted.

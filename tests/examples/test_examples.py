@@ -65,7 +65,9 @@ def test_droplet_on_asperities():
 
 
 def test_contact_angles_on_asperities():
-    found = load("contact_angles_on_asperities").main(angles=(180.0, 150.0), radius=0.1, elements=60)
+    found = load("contact_angles_on_asperities").main(
+        angles=(180.0, 150.0), radius=0.1, elements=60
+    )
     flat, steep = found[180.0], found[150.0]
     assert steep["height"] == pytest.approx(flat["height"], rel=2e-2)
     assert steep["equator_radius"] == pytest.approx(flat["equator_radius"], rel=5e-3)
