@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import OutputError
 from ..solids import Sphere, SphereLattice, Spheres
 from ..solver.contact_line import contact_line
-from ..terms import Contact
+from ..terms import Contact, TrimmedContactLine
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -47,14 +47,16 @@ def plot(
     color : "mean_curvature" (exact, from the spline), "pressure" or "none".
     size : of the picture in pixels.
     resolution : points along each direction of the patch.
-    traction : whether to draw the pull of the membrane on the solid along the contact line.
+    traction : whether to draw the pull of the membrane on the solid along the contact line on which
+        it ends.
     view : direction from the middle of the picture to the eye, in the scene's frame.
     zoom : enlargement.
     focus : world point in the middle of the picture; the membrane's middle if omitted.
 
     Notes
     -----
-    Asperities that carry a part of the droplet are drawn red.
+    Asperities that carry a part of the droplet are drawn red. Where the membrane passes through
+    solids only its part outside is drawn, and its contact lines there.
 
     Raises
     ------
@@ -68,6 +70,10 @@ def plot(
     plotter.set_background("white")
     length = solution.scene.units.length
     mesh, name = _membrane(solution, color, resolution)
+    through = _passes_through(solution)
+    if through:
+        mesh, lines = _outside(solution, mesh)
+        plotter.add_mesh(lines, color="#3d0c02")
     options: dict[str, Any] = {"color": "#6fa8dc"}
     if name:
         unit = solution.scene.units
@@ -80,7 +86,8 @@ def plot(
     plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
     _substrate(plotter, pv, solution)
     inside = solution.scene.line_inside
-    if solution.scene.substrate is not None and (inside or not _on_an_area(solution)):
+    edge = inside is not None or not _on_an_area(solution)
+    if solution.scene.substrate is not None and edge and not through:
         line = contact_line(solution.surface.moved(_local(solution)), inside or "xi2=0")
         world = solution.scene.units.to_world(line.position)
         curve = pv.lines_from_points(np.vstack([world, world[:1]]))
@@ -193,6 +200,30 @@ def _on_an_area(solution: Solution) -> bool:
     return any(isinstance(term, Contact) for term in solution.scene.terms)
 
 
+def _passes_through(solution: Solution) -> bool:
+    """Whether the membrane passes through its solids."""
+    return any(isinstance(term, TrimmedContactLine) for term in solution.scene.terms)
+
+
+LINE = 0.02
+"""Thickness of contact lines on spheres over their radius."""
+
+
+def _outside(solution: Solution, mesh: Any) -> tuple[Any, Any]:
+    """The part of the membrane's mesh that bounds the liquid, and its contact lines."""
+    solid = solution.scene.substrate
+    assert solid is not None
+    mesh["gap"] = solid.nearest(np.asarray(mesh.points, float)).gap
+    # inside its solid the membrane may rise above it: such parts hang on nothing
+    outer = mesh.clip_scalar(scalars="gap", value=0.0, invert=False).connectivity("largest")
+    edges = outer.extract_feature_edges(
+        feature_edges=False, manifold_edges=False, non_manifold_edges=False
+    )
+    lines = edges.threshold(1e-6 * solid.scale, scalars="gap", invert=True)
+    lines = lines.extract_surface(algorithm=None).strip(join=True)
+    return outer, lines.tube(radius=LINE * solid.scale)
+
+
 def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
     """Spheres under the droplet and a little beside it, and their base."""
     substrate = solution.scene.substrate
@@ -204,7 +235,7 @@ def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
     for which, color in ((near[dry], "#d9d2c5"), (near[~dry], "#cc4125")):
         cloud = pv.PolyData(substrate.center_of(which))
         cloud["diameter"] = 2.0 * substrate.radius_of(which)
-        ball = pv.Sphere(radius=0.5, theta_resolution=40, phi_resolution=40)
+        ball = pv.Sphere(radius=0.5, theta_resolution=80, phi_resolution=80)
         balls = cloud.glyph(geom=ball, scale="diameter", orient=False)
         plotter.add_mesh(balls, color=color, ambient=0.3, smooth_shading=True)
     if substrate.base is not None:

@@ -62,3 +62,26 @@ def test_droplet_on_asperities():
     assert found["asperities"] == 21
     assert 0 < found["smallest_force"] < found["largest_force"] < 1.0
     assert found["penetration"] < 1e-3
+
+
+def test_contact_angles_on_asperities():
+    found = load("contact_angles_on_asperities").main(
+        angles=(180.0, 150.0), radius=0.1, elements=60
+    )
+    flat, steep = found[180.0], found[150.0]
+    assert steep["height"] == pytest.approx(flat["height"], rel=2e-2)
+    assert steep["equator_radius"] == pytest.approx(flat["equator_radius"], rel=5e-3)
+    assert steep["A_wet"] > 1.5 * flat["A_wet"]
+    assert steep["energy"] < flat["energy"]
+    assert steep["asperities"] >= flat["asperities"]
+    assert 149.0 < steep["smallest_angle"] < steep["largest_angle"] < 151.0
+    assert steep["carried"] == pytest.approx(1.0, abs=1e-4)
+
+
+def test_cassie_limit():
+    example = load("cassie_limit")
+    (row,) = example.main(angles=(130.0,), shapes=("circle",), per_radius=4)
+    assert row["low"] < row["high"] < 1.001 * row["low"]
+    assert row["low"] == pytest.approx(row["level_line"], rel=1e-3)
+    assert row["polar"] > 90.0
+    assert example.level_line(180.0, 0.04) == pytest.approx(0.1 * np.pi / (0.04 - np.pi * 0.05**2))

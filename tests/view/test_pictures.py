@@ -79,6 +79,27 @@ def test_picture_of_asperities_shows_the_wet_ones_in_red(tmp_path):
     assert red_part(color="none", zoom=2.5, focus=(0.0, 0.0, 0.0)) > 2.0 * whole
 
 
+def test_picture_leaves_out_the_membrane_inside_its_sphere():
+    """What is drawn has the liquid-gas surface's area, and its lines lie on the sphere."""
+    pytest.importorskip("pyvista")
+    radius, center = 0.05, np.array([0.0, 0.0, -0.05])
+    scene = iga.asperity_cell(
+        iga.Sphere(120.0, radius, tuple(center)),
+        size=0.2,
+        pressure=3.0,
+        discretization=iga.Discretization(elements=16),
+    )
+    found = iga.solve(scene)
+    mesh, _ = picture._membrane(found, "none", 129)
+    whole = mesh.area
+    outer, lines = picture._outside(found, mesh)
+    assert outer.area == pytest.approx(found.measures["A_LG"], rel=1e-3)
+    assert whole > 1.1 * outer.area
+    away = np.linalg.norm(lines.points - center, axis=1) / radius
+    assert abs(away - 1.0).max() < 1.5 * picture.LINE
+    assert lines.n_points > 100
+
+
 def test_a_machine_that_cannot_draw_is_told_what_to_install(solution, tmp_path, monkeypatch):
     monkeypatch.setattr(picture, "can_draw", lambda: False)
     with pytest.raises(iga.OutputError, match="libegl1"):
