@@ -16,8 +16,9 @@ from scipy.sparse.linalg import splu
 from ..arrays import Array, Index, Mask
 from ..splines import Faces, Space, jumps
 
-STRENGTH = 0.004
-"""Factor of the jumps' energy over the tension."""
+STRENGTH = 0.004, 0.02
+"""Factor of the jumps' energy over the tension: least, and at 45 degrees to the solid, where it is
+steadier. The error of a line's angle grows with it, and with the square of 1 / angle."""
 FREE = 5
 """Iterations after which elements stay tied that no longer need it: they could alternate for
 ever."""
@@ -31,7 +32,13 @@ class Ties:
     elements, portion : (elements,) of the space, and the portion of each that is in the sector.
     faces : between them.
     unknowns : (elements, local) unknown of each local function, -1 for none; size : their number.
+
+    Attributes
+    ----------
+    strength : factor of the jumps' energy over the tension.
     """
+
+    strength: float = STRENGTH[0]
 
     def __init__(
         self,
@@ -44,10 +51,10 @@ class Ties:
     ) -> None:
         self._space, self._elements, self._portion = space, elements, portion
         self._faces, self._unknowns, self._size = faces, unknowns, size
-        self.begin()
 
-    def begin(self) -> None:
-        """Free to choose again."""
+    def begin(self, steepness: float) -> None:
+        """Free to choose again, for a membrane that meets its solid at an angle (radians)."""
+        self.strength = float(np.clip(STRENGTH[1] * (steepness / (0.25 * np.pi)) ** 2, *STRENGTH))
         none = np.zeros(len(self._elements), bool)
         self._held, self._touched, self._last = none, none, (none, none)
         self._calls = 0
@@ -77,25 +84,25 @@ class Ties:
         tied = f.part(first & second & cuts)
         functions, rows, weights = jumps(self._space, self._elements, tied)
         portion = np.minimum(self._portion[tied.first], self._portion[tied.second])
-        return functions, rows, STRENGTH * weights * portion[:, None]
+        return functions, rows, weights * portion[:, None]
 
     def energy(self, points: Array) -> float:
         """Energy of the ties, tension 1."""
         functions, rows, weights = self.across
         jump = rows @ points[functions]
-        return float(0.5 * ((jump**2).sum(axis=-1) * weights).sum())
+        return float(0.5 * self.strength * ((jump**2).sum(axis=-1) * weights).sum())
 
     def forces(self, points: Array) -> Array:
         """(faces, 2 local, 3)"""
         functions, rows, weights = self.across
         jump = rows @ points[functions]
-        return np.asarray(rows.transpose(0, 2, 1) @ (jump * weights[..., None]))
+        return np.asarray(rows.transpose(0, 2, 1) @ (jump * (self.strength * weights)[..., None]))
 
     def hessian(self, directions: Array) -> Array:
         """(faces, 2 local, 2 local) along directions (control points, 3)."""
         functions, rows, weights = self.across
         d = directions[functions]
-        blocks = rows.transpose(0, 2, 1) @ (rows * weights[..., None])
+        blocks = rows.transpose(0, 2, 1) @ (rows * (self.strength * weights)[..., None])
         return np.asarray(blocks * (d @ d.transpose(0, 2, 1)))
 
     @cached_property

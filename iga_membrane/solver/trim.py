@@ -87,7 +87,8 @@ class Trim:
 
     def begin(self) -> None:
         """Free to choose again what is tied; spots are where they were."""
-        self.ties.begin()
+        least = float(np.min(self.term.solid.contact_angle))
+        self.ties.begin(np.pi - np.radians(least))
         self._known.clear()
 
     @property
