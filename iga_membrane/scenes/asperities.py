@@ -25,8 +25,9 @@ FEWEST = 48
 """Elements from the middle to a side at least, for the droplet itself."""
 MOST = 600
 """The same at most, by default."""
-SPREAD = 0.3
-"""Growth of the finely meshed foot with ``1 + cos`` of the contact angle."""
+SPREAD = 1.15
+"""Growth of the finely meshed foot below 180 degrees; the same for all angles, so that paths in the
+angle keep their mesh."""
 FINE = 0.75
 """Part of the elements from the middle of the square to a side that lies under the foot."""
 
@@ -53,7 +54,7 @@ def whole_skin(
     length: float,
     degree: int,
     elements: int,
-    contact_angle: float = 180.0,
+    lies: bool = True,
     start: object = None,
 ) -> Skin:
     """Flat-footed droplet of least energy, its foot meshed evenly.
@@ -64,13 +65,14 @@ def whole_skin(
     length : over which the contact changes: radius of the smallest asperity.
     elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along
         ``length``.
-    contact_angle : the smallest on the asperities: below 180 degrees more of them are wet.
+    lies : whether the membrane lies on the asperities; where it passes through them, below 180
+        degrees, more of them are wet.
     start : "above" or "touching" for a sphere; anything else for the flat-footed droplet.
     """
     pancake = least_energy_pancake(180.0, bond, volume, steepest=180.0)
     pressure = estimated_pressure(pancake, bond, volume)
     foot = estimated_foot(pancake, bond, volume)
-    foot *= 1.0 + SPREAD * (1.0 + float(np.cos(np.radians(contact_angle))))
+    foot *= 1.0 if lies else SPREAD
     widest = pancake.flat + pancake.radius
     wide = min(1.1 * foot + 2.0 * length, 0.95 * widest)
     meridian = _meridian(pancake, wide)

@@ -35,6 +35,7 @@ from .foot import (
 )
 from .liquid import Discretization, Liquid
 from .scene import FreeEdge, Ramp, Scene
+from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
 HOLDS = ("none", "x", "xy", "xyz")
 
@@ -51,6 +52,7 @@ def sessile_droplet(
     penalty: float | None = None,
     penetration_tolerance: float = 1e-2,
     contact_line: str = "auto",
+    membrane: WholeMembrane | None = None,
 ) -> Scene:
     """Droplet of a volume on a plane, on top of a sphere, or on asperities.
 
@@ -74,8 +76,10 @@ def sessile_droplet(
     penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
         that exact contact leaves at most and beyond which a state is no success.
     contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
-        through the asperities; "adhesion", it lies on asperities that attract it, for angles near
-        180 degrees; "auto" chooses.
+        through the sphere or the asperities; "adhesion", it lies on asperities that attract it, for
+        angles near 180 degrees; "auto" chooses.
+    membrane : the paper's formulation, with its own penalty, instead of a contact line as the
+        membrane's edge; on a plane, below 180 degrees.
 
     Raises
     ------
@@ -127,9 +131,13 @@ def sessile_droplet(
             contact_line=contact_line,
         )
 
+    # at 180 degrees on a plane there is nothing to start from without gravity
+    has_way = isinstance(substrate, Sphere) or (
+        isinstance(substrate, Plane) and substrate.contact_angle < 180.0
+    )
     described = _describe(substrate, volume, liquid, acceleration, hold)
     ramp = None
-    if bond.any() and isinstance(substrate, (Plane, Sphere)) and not built.tangent:
+    if bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
     scene = Scene(
         built.surface,
@@ -145,6 +153,8 @@ def sessile_droplet(
         description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=_hints(substrate, bond, sector),
     )
+    if membrane is not None:
+        return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
     if built.predictor:
         return _with_start(scene, terms, built)
     if not built.tangent:
@@ -180,10 +190,16 @@ def _with_start(scene: Scene, terms: Sequence[Term], built: Foot) -> Scene:
         return replace(scene, terms=[*terms, line], substrate=raised, ramp=None, predictor=near)
 
     least, good = float(np.min(solid.contact_angle)), PREDICTABLE[0]
-    if least >= good:
-        return started(least)
-    ramp = Ramp("substrate.contact_angle", (good, least), started, only=True)
-    return replace(scene, ramp=ramp)
+    if least < good:
+        ramp = Ramp("substrate.contact_angle", (good, least), started, only=True)
+        return replace(scene, ramp=ramp)
+    # another angle may have a better start; its wet set may be another one, too
+    ramp = Ramp("substrate.contact_angle", (least + AROUND, least), started)
+    return replace(started(least), ramp=ramp)
+
+
+AROUND = 12.0
+"""Degrees above its own angle from which a scene is approached if its own start fails."""
 
 
 def _acceleration(gravity: Any) -> Array:

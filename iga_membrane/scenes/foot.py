@@ -133,22 +133,24 @@ def _on_an_area(parts: Question) -> Foot:
     unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
     length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
     least = float(np.min(substrate.contact_angle))
-    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, least, parts.start)
+    attracts = parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP)
+    lies = attracts or least == 180.0
+    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, lies, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
         surface = surface.moved(parts.start.points)
     sector = Sector(model)
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
-    # on a plane every place is as good, and the centroid is held
     # contact lines lie in the part of the membrane that takes no part in shifts
-    above = 0.0 if least == 180.0 else 2.0 * largest_radius(local)
+    above = 0.0 if lies else 2.0 * largest_radius(local)
+    # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
     foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
-    most = float(np.max(substrate.contact_angle))
-    if parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP):
+    if attracts:
+        most = float(np.max(substrate.contact_angle))
         if most > least:
             raise SceneError(
                 f"substrate.contact_angle: {least:g} to {most:g} degrees: adhesion has one angle "
@@ -213,7 +215,7 @@ def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
     r = scale.local_solid(substrate).scale
     sunk = r * (1.0 + np.cos(np.radians(angle)))
     law = (pressure + 2.0 / r) / sunk * scale.tension / scale.length**2
-    below = Contact(with_angle(substrate, 180.0), float(law), 1.0)
+    below = Contact(with_angle(line.solid, 180.0), float(law), 1.0)
     return replace(foot, terms=[line], predictor=[below])
 
 

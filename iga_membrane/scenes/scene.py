@@ -20,7 +20,9 @@ from ..terms import (
     Constraint,
     Contact,
     LineTerm,
+    PlaneContactLine,
     Scale,
+    SphereContactLine,
     SurfaceTension,
     Term,
     TrimmedContactLine,
@@ -94,6 +96,8 @@ class Scene:
     grading : spread of the control points along the meridians.
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
+    motion : "spines", one unknown per control point, or "cartesian", three, which needs a
+        Stabilization.
     ramp : the way to this scene if a direct solve fails.
     predictor : a scene of the same space whose equilibrium is near this one's; contact lines start
         from it.
@@ -113,6 +117,7 @@ class Scene:
     scale: Scale | None = None
     grading: Grading = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
+    motion: str = "spines"
     ramp: Ramp | None = field(default=None, repr=False)
     predictor: Scene | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
@@ -169,6 +174,12 @@ class Scene:
                     f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
                     "model here"
                 )
+
+    @property
+    def line_inside(self) -> str | None:
+        """The line of a membrane that covers the wetted area too, where it leaves the solid."""
+        lines = (t for t in self.terms if isinstance(t, (PlaneContactLine, SphereContactLine)))
+        return next((t.edge for t in lines if t.covered), None)
 
     @property
     def lateral_load(self) -> dict[str, float]:

@@ -24,7 +24,7 @@ from .film import film_between_rings
 from .foot import CONTACT_LINES
 from .liquid import MODELS, Discretization, Liquid
 from .scene import Ramp, Scene
-from .scene_keys import KEYS, check_numbers, table_of
+from .scene_keys import KEYS, check_numbers, later, membrane_of, table_of
 from .sheet import liquid_sheet
 
 SCHEMA = 1
@@ -112,11 +112,11 @@ def read_scene(data: Any) -> SceneFile:
     for name, table in tables.items():
         check_numbers(name, table)
     if kind not in _READERS:
-        raise _later(f'scene = "{kind}"')
+        raise later(f'scene = "{kind}"')
     for name in _FOREIGN[kind]:
         if data.get(name):
             raise SceneError(f'{name}: does not belong to scene = "{kind}"; remove it')
-    limits = _solver(tables["solver"])
+    limits = _solver(tables["solver"], kind)
     if data.get("path"):
         return SceneFile(_along_path(data), limits)
     return SceneFile(_READERS[kind](data, tables), limits)
@@ -125,7 +125,7 @@ def read_scene(data: Any) -> SceneFile:
 def _along_path(data: Mapping[str, Any]) -> Scene:
     """The scene at the end of its path, with the path as the ramp to walk."""
     if len(data["path"]) > 1:
-        raise _later(f"{len(data['path'])} [[path]] tables")
+        raise later(f"{len(data['path'])} [[path]] tables")
     path = data["path"][0]
     for key in ("parameter", "values"):
         if key not in path:
@@ -139,10 +139,12 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     def at(value: float) -> Scene:
         return read_scene(_set(fixed, parameter, value)).scene
 
-    # one model for the whole path: the largest that any of its scenes needs
-    models = [at(value).sector.model for value in values]
+    # one model and mesh for the whole path: the largest that any of its scenes needs
+    scenes = [at(value) for value in values]
+    model = min((scene.sector.model for scene in scenes), key=MODELS.index)
+    meshes = [scene.description["discretization"]["elements"] for scene in scenes]
     mesh = dict(fixed.get("discretization", {}))
-    fixed["discretization"] = {"model": min(models, key=MODELS.index)} | mesh
+    fixed["discretization"] = {"model": model, "elements": max(meshes)} | mesh
     end = at(values[-1])
     description = dict(end.description) | {"path": [{"parameter": parameter, "values": values}]}
     bound = end.ramp.bound if end.ramp is not None and end.ramp.parameter == parameter else None
@@ -179,6 +181,8 @@ def _set(data: Mapping[str, Any], parameter: str, value: float) -> dict[str, Any
 def _contact(table: Mapping[str, Any]) -> dict[str, Any]:
     """How contact areas are held, by the names of the scenes."""
     law: dict[str, Any] = {}
+    if table.get("contact_line") == "line_load":
+        return law
     if table.get("contact", "exact") == "penalty":
         law["penalty"] = table.get("penalty", 1e4)
     if "penetration_tolerance" in table:
@@ -209,18 +213,19 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
         shape=cell.get("shape", "square"),
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
         discretization=Discretization(**tables["discretization"]),
-        contact_line=tables["solver"].get("contact_line", "auto"),
+        contact_line=_line(tables["solver"]),
         **_contact(tables["solver"]),
     )
 
 
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     if data.get("particle"):
-        raise _later("[[particle]]")
+        raise later("[[particle]]")
     liquid, substrate = tables["liquid"], tables["substrate"]
     for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
         if field.split(".")[1] not in table:
             raise SceneError(f"{field}: missing; a sessile droplet needs it")
+    membrane = membrane_of(tables["solver"])
     return sessile_droplet(
         _substrate(substrate),
         volume=liquid["volume"],
@@ -229,15 +234,22 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
         discretization=Discretization(**tables["discretization"]),
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
         start=_start(tables["solver"]),
-        contact_line=tables["solver"].get("contact_line", "auto"),
+        contact_line=_line(tables["solver"]),
+        membrane=membrane,
         **_contact(tables["solver"]),
     )
+
+
+def _line(table: Mapping[str, Any]) -> str:
+    """The way of the contact line; "line_load" is a membrane of its own."""
+    way = str(table.get("contact_line", "auto"))
+    return "auto" if way == "line_load" else way
 
 
 def _start(table: Mapping[str, Any]) -> str | None:
     start = table.get("start", "auto")
     if start.endswith(".npz"):
-        raise _later("solver.start from a state file")
+        raise later("solver.start from a state file")
     choice("solver.start", start, ("auto", *STARTS))
     return None if start == "auto" else str(start)
 
@@ -246,7 +258,7 @@ def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Sph
     """The solid under a droplet; a sphere or a lattice has its tops at z = 0."""
     kind = choice("substrate.kind", table.get("kind", "plane"), SUBSTRATES)
     if kind not in _SUBSTRATE_KEYS:
-        raise _later(f'substrate.kind = "{kind}"')
+        raise later(f'substrate.kind = "{kind}"')
     allowed = _SUBSTRATE_KEYS[kind]
     for key in table:
         if key != "kind" and key not in allowed:
@@ -315,14 +327,14 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, sheet = tables["liquid"], tables["sheet"]
     particles = data.get("particle", [])
     if len(particles) > 1:
-        raise _later(f"a sheet with {len(particles)} [[particle]] tables")
+        raise later(f"a sheet with {len(particles)} [[particle]] tables")
     if "volume" in liquid:
         raise SceneError("liquid.volume: a sheet's volume is sheet.volume; move it there")
     if "size" not in sheet:
         raise SceneError("sheet.size: missing; a liquid sheet needs it")
     gravity = _gravity(tables["gravity"])
     if gravity[0] or gravity[1] or gravity[2] > 0:
-        raise _later("a sheet with gravity that does not point along -z")
+        raise later("a sheet with gravity that does not point along -z")
     return liquid_sheet(
         _particle(particles[0]) if particles else None,
         size=sheet["size"],
@@ -333,7 +345,8 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
         volume=sheet.get("volume"),
         liquid_weight=sheet.get("liquid_weight", False),
         discretization=Discretization(**tables["discretization"]),
-        contact_line=tables["solver"].get("contact_line", "auto"),
+        contact_line=_line(tables["solver"]),
+        membrane=membrane_of(tables["solver"]),
     )
 
 
@@ -343,7 +356,7 @@ def _particle(given: Mapping[str, Any]) -> Sphere:
             raise SceneError(f"particle[0].{key}: missing; a particle needs it")
     motion = given.get("motion", "fixed")
     if choice("particle[0].motion", motion, MOTIONS) != "fixed":
-        raise _later(f'particle[0].motion = "{motion}"')
+        raise later(f'particle[0].motion = "{motion}"')
     return Sphere(
         given["contact_angle"], given["radius"], given["center"], given.get("density", 0.0)
     )
@@ -375,8 +388,7 @@ def _gravity(table: Mapping[str, Any]) -> list[float]:
     return [float(g) for g in size * direction / np.linalg.norm(direction)]
 
 
-def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
-    built = {"motion": "spines"}
+def _solver(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
     words = {
         "motion": ("spines", "cartesian"),
         "contact": ("exact", "penalty"),
@@ -385,11 +397,10 @@ def _solver(table: Mapping[str, Any]) -> dict[str, Any]:
     for key, allowed in words.items():
         if key in table:
             choice(f"solver.{key}", table[key], allowed)
-    for key, only in built.items():
-        if table.get(key, only) != only:
-            raise _later(f'solver.{key} = "{table[key]}"')
-    if table.get("contact_line", "auto") not in CONTACT_LINES:
-        raise _later(f'solver.contact_line = "{table["contact_line"]}"')
+    if table.get("contact_line", "auto") not in (*CONTACT_LINES, "line_load"):
+        raise later(f'solver.contact_line = "{table["contact_line"]}"')
+    if kind not in ("sessile_droplet", "liquid_sheet") and membrane_of(table) is not None:
+        raise later(f'solver.contact_line = "line_load" in scene = "{kind}"')
     for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
         if key in table:
             number(f"solver.{key}", table[key], above=0.0)
@@ -401,7 +412,3 @@ def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         if count > 1:
             raise SceneError(f"{key}: given {count} times in one table; give it once")
     return dict(pairs)
-
-
-def _later(what: str) -> SceneError:
-    return SceneError(f"{what}: not available yet in this version")

@@ -8,6 +8,7 @@ from typing import Any, TypedDict
 from ..checks import choice, integer, number, suggestion
 from ..errors import SceneError
 from .liquid import MODELS
+from .whole_membrane import WholeMembrane
 
 # Every table and key of the contract; those whose capability is not built are refused by name.
 KEYS: dict[str, tuple[str, ...]] = {
@@ -95,3 +96,27 @@ def _check_nested(field: str, value: Any, limits: Limits) -> None:
             _check_nested(f"{field}[{i}]", item, limits)
     else:
         number(field, value, **limits)
+
+
+def later(what: str) -> SceneError:
+    """A value of the contract whose capability is not built."""
+    return SceneError(f"{what}: not available yet in this version")
+
+
+def membrane_of(table: Mapping[str, Any]) -> WholeMembrane | None:
+    """The paper's formulation, if its contact line is asked for."""
+    line = table.get("contact_line", "auto")
+    motion = table.get("motion", "cartesian" if line == "line_load" else "spines")
+    if line != "line_load":
+        if motion == "cartesian":
+            raise later('solver.motion = "cartesian" without contact_line = "line_load"')
+        return None
+    if motion == "spines" or table.get("contact", "penalty") == "exact":
+        key, word = ("motion", "spines") if motion == "spines" else ("contact", "exact")
+        raise SceneError(
+            f'solver.{key} = "{word}": contact_line = "line_load" is the paper\'s formulation, '
+            'with motion = "cartesian" and contact = "penalty"; leave them out or choose another '
+            "line"
+        )
+    names = ("stabilization", "penalty", "penetration_tolerance")
+    return WholeMembrane(**{name: table[name] for name in names if name in table})

@@ -39,7 +39,8 @@ from ..terms import (
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .scene import FreeEdge, Ramp, Scene
 from .sheet_through import sheet_through
-from .start import check_net, funnel_profile
+from .start import check_net, funnel
+from .whole_membrane import WholeMembrane, sheet_with_wetted_part
 
 BOUNDARIES = ("square", "circle")
 CONTACT_LINES = ("auto", "conforming", "trimmed")
@@ -60,6 +61,7 @@ def liquid_sheet(
     discretization: Discretization | None = None,
     start: Surface | None = None,
     contact_line: str = "auto",
+    membrane: WholeMembrane | None = None,
 ) -> Scene:
     """Sheet pinned on a rim in z = 0; without a particle a film or a cap.
 
@@ -75,6 +77,8 @@ def liquid_sheet(
     start : a surface of the same space to start from; it also chooses among several equilibria.
     contact_line : "conforming", the membrane ends on it; "trimmed", the membrane covers the whole
         rim and passes through the particle; "auto" is conforming.
+    membrane : the paper's formulation, which covers the wetted part of the particle too, instead
+        of a contact line as the sheet's edge; without pressure, volume and weight of the liquid.
 
     Raises
     ------
@@ -99,6 +103,20 @@ def liquid_sheet(
     if tangent and (boundary == "square" or (sector.model in ("full", "half") and not mesh.model)):
         raise SceneError(
             "particle.contact_angle = 180: not available yet with a square rim or off the axis"
+        )
+    described = _describe(
+        particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
+    )
+    if membrane is not None:
+        if particle is None or pressure or volume is not None or liquid_weight or start is not None:
+            raise SceneError(
+                'solver.contact_line = "line_load": not available yet for a sheet without a '
+                "particle, with pressure, volume or the liquid's weight, or from a start"
+            )
+        _check_place(particle, size, boundary)
+        mesh = (discretization or Discretization()).mesh(degree=3, elements=18)
+        return sheet_with_wetted_part(
+            particle, size, boundary, liquid, gravity, mesh, sector, membrane, described
         )
     terms: list[Term] = [SurfaceTension(gamma)]
     supports: list[Support] = [sector]
@@ -178,9 +196,7 @@ def liquid_sheet(
         kind="liquid_sheet",
         particle_pull=gravity,
         liquid_density=liquid.density,
-        description=_describe(
-            particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
-        ),
+        description=described,
     )
     if particle is None or not tangent:
         return scene
@@ -286,15 +302,14 @@ def _start(
 def _funnel(
     space: Space, particle: Sphere, half: float, boundary: str, curvature: float
 ) -> Surface:
-    """The sheet of small slopes, ``z = z_a + B log(r / a) + p (r^2 - a^2) / 4 gamma``, from the
-    circle where it meets the sphere at Young's angle to the rim."""
-    rim, a, height, _ = funnel_profile(particle, half, curvature)
-    x, y, _ = particle.center
+    """The sheet of small slopes from its circle on the sphere to the rim."""
+    r, (x, y, _) = particle.radius, particle.center
+    profile = funnel(particle, half, curvature)
     ring = circle(space.bases[0])
     outer = half * ring if boundary == "circle" else half * square(space.bases[0])
-    inner = np.array([x, y, 0.0]) + a * ring
+    inner = np.array([x, y, 0.0]) + r * profile.edge * ring
     points, matrix = meridian_interpolation(space)
-    sag = height(a + (rim - a) * points)
+    sag = r * profile.height(profile.edge + (profile.rim - profile.edge) * points)
     values = np.stack([1.0 - points, points, sag], axis=1)
     first, second, height = np.linalg.solve(matrix, values).T[:, :, None]
     up = np.array([0.0, 0.0, 1.0])

@@ -10,7 +10,7 @@ from ..surface.ring import axisymmetric, drop_space
 from ..surface.shapes import sheet as flat_square
 from ..surface.surface import Surface
 from .liquid import Mesh
-from .start import funnel_profile, gathered
+from .start import funnel, gathered
 
 DRAWN = 0.5
 """Part by which steps at the contact line are shorter."""
@@ -26,7 +26,8 @@ def sheet_through(
     half : half of the rim's size.
     curvature : pressure over tension.
     """
-    rim, line, height, slope = funnel_profile(particle, half, curvature)
+    profile, r = funnel(particle, half, curvature), particle.radius
+    rim, line = r * profile.rim, r * profile.edge
     x, y, _ = particle.center
     centre = np.array([x, y])
     radii = np.linspace(0.0, rim, 8001)
@@ -35,10 +36,10 @@ def sheet_through(
     if boundary == "circle":
         space = drop_space("bspline", mesh.degree, mesh.elements)
 
-        def profile(t: Array) -> tuple[Array, Array, Array]:
+        def disc_of(t: Array) -> tuple[Array, Array, Array]:
             return half * (1.0 - t), np.zeros_like(t), np.full_like(t, -half)
 
-        disc = axisymmetric(space, profile)
+        disc = axisymmetric(space, disc_of)
         flat = disc.points * [1.0, -1.0, 1.0]
     else:
         square = flat_square(2.0 * half, elements=mesh.elements, degree=mesh.degree)
@@ -48,8 +49,8 @@ def sheet_through(
     factor = np.where(reach < rim, np.interp(reach, radii, drawn) / np.maximum(reach, 1e-300), 1.0)
     place = centre + away * factor[:, None]
     radius = np.linalg.norm(place - centre, axis=1)
-    inside = height(np.array(line)) - 0.5 * slope / line * (line**2 - radius**2)
-    outside = height(np.clip(radius, line, rim))
+    inside = r * profile.depth - 0.5 * profile.slope / line * (line**2 - radius**2)
+    outside = r * profile.height(np.clip(radius, line, rim) / r)
     z = np.where(radius < line, inside, outside)
     z[_on_rim(flat, half, boundary)] = 0.0
     surface = Surface(space, np.column_stack([place, z]))

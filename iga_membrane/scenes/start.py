@@ -8,7 +8,6 @@ volume the one with the least energy is close enough to any sessile drop for New
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,6 +123,57 @@ def drop_on_sphere(contact_angle: float, radius: float, volume: float) -> tuple[
     return polar, drop(polar)[1]
 
 
+@dataclass(frozen=True)
+class Funnel:
+    """Sheet of small slopes on a sphere, lengths over its radius.
+
+    Attributes
+    ----------
+    polar : angle of the circle on the sphere from its top; edge : that circle's radius.
+    rim : radius of the rim.
+    depth, log, quarter : of :meth:`height`.
+    """
+
+    polar: float
+    edge: float
+    rim: float
+    depth: float
+    log: float
+    quarter: float
+
+    def height(self, radius: Array) -> Array:
+        """``z = z_a + B log(r / a) + p (r^2 - a^2) / 4 gamma`` at distances from the axis."""
+        bowl = self.quarter * (radius**2 - self.edge**2)
+        return np.asarray(self.depth + self.log * np.log(radius / self.edge) + bowl)
+
+    @property
+    def slope(self) -> float:
+        """Of the sheet at the sphere, outwards."""
+        return self.log / self.edge + 2.0 * self.quarter * self.edge
+
+
+def funnel(particle: Sphere, half: float, curvature: float) -> Funnel:
+    """The funnel that meets a sphere at its contact angle.
+
+    Parameters
+    ----------
+    half : size of the rim from the middle.
+    curvature : pressure over tension.
+    """
+    r, (x, y, z) = particle.radius, particle.center
+    rim, quarter = (half - max(abs(x), abs(y))) / r, 0.25 * curvature * r
+    polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
+    polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
+    a, depth = np.sin(polar), z / r + np.cos(polar)
+    log = -(depth + quarter * (rim**2 - a**2)) / np.log(rim / a)
+    slope = np.arctan(log / a + 2.0 * quarter * a)
+    excess = np.pi - np.radians(particle.contact_angle) - polar - slope
+    falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
+    # the last crossing is the stable one; without any, the nearest to one
+    k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
+    return Funnel(float(polar[k]), float(a[k]), rim, float(depth[k]), float(log[k]), quarter)
+
+
 def check_net(start: Surface, asked: Space) -> None:
     """Refuse a start of another space.
 
@@ -150,28 +200,3 @@ def gathered(radius: Array, spot: float, part: float) -> Array:
 
 GATHERED = 0.65
 """Width, over the spot's radius, of the zone of shorter steps on either side of its edge."""
-
-
-def funnel_profile(
-    particle: Sphere, half: float, curvature: float
-) -> tuple[float, float, Callable[[Array], Array], float]:
-    """The sheet of small slopes round a particle: its rim's nearest distance from the particle's
-    axis, the radius of its line, its height at radii from the axis, its slope at the line."""
-    r, (x, y, z) = particle.radius, particle.center
-    rim, quarter = (half - max(abs(x), abs(y))) / r, 0.25 * curvature * r
-    polar = np.linspace(1e-3, np.pi - 1e-3, 4001)
-    polar = polar[(np.sin(polar) < 0.95 * rim) & ((rim > 1.0) | (polar < 0.5 * np.pi))]
-    a, depth = np.sin(polar), z / r + np.cos(polar)
-    log = -(depth + quarter * (rim**2 - a**2)) / np.log(rim / a)
-    slope = np.arctan(log / a + 2.0 * quarter * a)
-    excess = np.pi - np.radians(particle.contact_angle) - polar - slope
-    falls = np.flatnonzero((excess[:-1] > 0) & (excess[1:] <= 0))
-    # the last crossing is the stable one; without any, the nearest to one
-    k = int(falls[-1]) if len(falls) else int(np.abs(excess).argmin())
-    line, low, b, steep = float(a[k]), float(depth[k]), float(log[k]), float(slope[k])
-
-    def height(radius: Array) -> Array:
-        at = np.asarray(radius) / r
-        return np.asarray(r * (low + b * np.log(at / line) + quarter * (at**2 - line**2)))
-
-    return r * rim, r * line, height, float(np.tan(steep))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..arrays import Array, Index
 from ..checks import choice, contact_angle, number, vector
@@ -165,7 +165,9 @@ class Spheres:
         return np.asarray(self.radii)[which]
 
     @cached_property
-    def _tree(self) -> cKDTree:
+    def _tree(self) -> Any:
+        from scipy.spatial import cKDTree
+
         return cKDTree(np.asarray(self.centers))
 
     def nearest(self, points: Array) -> Nearest:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from ..terms import BodyDensity
 
@@ -25,6 +24,7 @@ def apparent_angle(height: float, body: BodyDensity, tension: float) -> float:
     What a goniometer sees: the profile knows the pressure and the height of the droplet, not its
     asperities.
     """
+    from scipy.integrate import solve_ivp  # a third of a small solve's process: only where needed
 
     def slope(s: float, state: tuple[float, float, float]) -> list[float]:
         r, z, turn = state

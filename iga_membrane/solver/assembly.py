@@ -9,8 +9,10 @@ from time import process_time
 import numpy as np
 
 from ..arrays import Array, Index
+from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, LineTable, Table
+from ..surface.cartesian import Cartesian
 from ..surface.motion import Motion, Spines
 from ..surface.sector import mirrors, sector_elements, sector_table
 from ..surface.supports import Sliding, Support
@@ -22,6 +24,7 @@ from ..terms import (
     Constraint,
     Contact,
     LineTerm,
+    Stabilization,
     TrimmedContactLine,
 )
 from ..terms import variations as vary
@@ -29,6 +32,7 @@ from ..terms.edge_gap import EdgeGap
 from ..terms.trimmed import end_hessian, line_forces, line_hessian
 from .contact import ContactSet
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
+from .stabilizer import Stabilizer
 from .trim import Trim
 
 
@@ -42,17 +46,19 @@ class Energies:
     constraints : (m,) prescribed integrals minus their values.
     area_vectors : (elements, points, 3) ``a_1 x a_2`` at the quadrature points.
     lowest : smallest z at the quadrature points.
+    true : whether contact lines inside the membrane lie on their solid.
     """
 
     total: float
     constraints: Array
     area_vectors: Array
     lowest: float
+    true: bool = True
 
     def regular_after(self, before: Energies) -> bool:
         """Finite, and nowhere folded over against the state before it."""
         dot = np.einsum("eqi,eqi->eq", self.area_vectors, before.area_vectors)
-        return bool(np.isfinite(self.total) and (dot > 0).all())
+        return bool(self.true and np.isfinite(self.total) and (dot > 0).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +109,7 @@ class Assembly:
         self.copies = sector.copies
         self._mirrored = [axis in sector.mirrored for axis in "xyz"]
         self._supports: tuple[Support, ...] = scene.local_supports()
-        self.spines = Spines(surface, self._supports, scene.directions)
+        self.spines = _motion(scene, surface, self._supports)
         self.size = self.spines.size
         ring = space.bases[0]
         around = max(3, ring.degree) if ring.periodic and ring.smooth else ring.degree + 1
@@ -118,7 +124,10 @@ class Assembly:
         self._ring_elements = np.arange(space.bases[0].elements // sector.copies)
         self._space = space
         self._groups = self._row_groups()
+        self._start = surface
+        self._law = next((t for t in scene.terms if isinstance(t, Contact)), None)
         self.contact = self._contact(scene, surface)
+        self.stabilizer: Stabilizer | None = None
         self._tied: tuple[Index, Array, Array] | None = None
         self.trim = self._trim(scene)
         self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
@@ -153,7 +162,7 @@ class Assembly:
         terms, supports = scene.local_terms(), scene.local_supports()
         if supports != self._supports:
             self._supports = supports
-            self.spines = Spines(scene.local_surface(), supports, scene.directions)
+            self.spines = _motion(scene, scene.local_surface(), supports)
         self.constraints = [t for t in terms if isinstance(t, Constraint)]
         self.tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
         self._bodies = [
@@ -162,13 +171,53 @@ class Assembly:
         self._held = [t.density() for t in self.constraints]
         self._targets = np.array([t.target for t in self.constraints]) / self.copies
         self.lines = [(t, self._edge(t.edge)) for t in terms if isinstance(t, LineTerm)]
-        if self.trim is not None:
-            self.trim.term = next(t for t in terms if isinstance(t, TrimmedContactLine))
+        self._load_contact(scene)
         self._gaps = [
             (EdgeGap(s.solid, s.edge), self._edge(s.edge))
             for s in scene.local_supports()
             if isinstance(s, Sliding) and s.solid is not None
         ]
+
+    def begin_step(self, surface: Surface, term: Stabilization) -> None:
+        """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
+        eq. (23), and tractions of the penalty count per area of it."""
+        normals = self.spines.on(surface).directions[: self._space.count].copy()
+        if self.contact is not None and self.lines:
+            # the contact line is a kink, which has no tangent plane
+            normals[self._space.edge_functions(self.lines[0][0].edge)] = 0.0
+        self.stabilizer = Stabilizer(term, self.table, surface.points, normals)
+        if self.contact is not None:
+            self.contact.area = self.stabilizer.before.area
+
+    @property
+    def conservative(self) -> bool:
+        """Whether all forces have an energy, so that descent can be asked for."""
+        return self.stabilizer is None or not self.stabilizer.projected
+
+    def _load_contact(self, scene: Scene) -> None:
+        """Take the contact of another scene: its solid, its angles, its law.
+
+        Raises
+        ------
+        GeometryError
+            Contact areas in the one, contact lines inside the membrane in the other.
+        """
+        terms = scene.local_terms()
+        lies = any(isinstance(t, Contact) for t in terms)
+        line = next((t for t in terms if isinstance(t, TrimmedContactLine)), None)
+        if lies != (self.contact is not None) or (line is None) != (self.trim is None):
+            raise GeometryError("this scene meets its solid in another way than the one before")
+        if self.trim is not None and line is not None:
+            self.trim.term = line
+            self.trim.forget()
+        law = next((t for t in scene.terms if isinstance(t, Contact)), None)
+        if self.contact is not None and not _same_contact(law, self._law):
+            held = self.contact.multipliers
+            self.contact = self._contact(scene, self._start)
+            assert self.contact is not None
+            self.contact.multipliers = held
+            self.__dict__.pop("_contact_rows", None)
+        self._law = law
 
     @property
     def multipliers(self) -> int:
@@ -204,11 +253,13 @@ class Assembly:
         total, constraints = self._values(points, at)
         if self.contact is not None:
             total += self.contact.energy(self.contact.touch(points))
+        if self.stabilizer is not None:
+            total += self.stabilizer.energy(points)
         if self.trim is not None:
             total += self.tension * self.trim.ties.energy(points)
-            total = total if self.trim.true(points) else np.inf
         self.seconds += process_time() - start
-        return Energies(total, constraints, at.c, float(at.x[..., 2].min()))
+        true = self.trim is None or self.trim.true(points)
+        return Energies(total, constraints, at.c, float(at.x[..., 2].min()), true)
 
     def energy(self, surface: Surface) -> float:
         """Energy of the liquid and its contact, without what ties the control points."""
@@ -418,6 +469,10 @@ class Assembly:
             work = _along(push, directions, rows)
             gradient += self._gather(work, rows.functions)
             scale += self._gather(np.abs(work), rows.functions)
+        if self.stabilizer is not None:
+            rows, hold = self._wide, self.stabilizer.forces(points)
+            work = _along(hold[:, self._columns], directions, rows)
+            gradient += self._gather(work, rows.functions)
         for term, edge in self.lines:
             line = self._edge_rows(edge)
             forces = _again(term.forces(edge, points, term.strength, self.body), line)
@@ -457,6 +512,11 @@ class Assembly:
             rows = self._contact_rows
             near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
             matrix.add(self.spines.unknowns[rows.functions[near]], blocks)
+        if self.stabilizer is not None:
+            rows = self._wide
+            along = directions[rows.functions]
+            blocks = self.stabilizer.hessian(points, rows, self._columns, along)
+            matrix.add(self.spines.unknowns[rows.functions], blocks)
         for term, edge in self.lines:
             self._add_edge(
                 matrix, directions, edge, term.hessian(edge, points, term.strength, body)
@@ -496,32 +556,55 @@ class Assembly:
         )
 
     def mass(self, surface: Surface, directions: Array) -> Matrix:
-        """Mass matrix of normal displacement."""
+        """Mass matrix of normal displacement; of all displacement where tangents move too."""
         at = vary.element_points(self.table, surface.points)
         matrix = self._matrix()
+        full = self.stabilizer is not None
         for rows, part in self._parts(surface.points, at):
-            blocks = vary.mass(rows, part, directions[rows.functions])
+            blocks = vary.mass(rows, part, directions[rows.functions], full=full)
             matrix.add(self.spines.unknowns[rows.functions], blocks)
         return matrix
 
     def _row_groups(self) -> list[tuple[slice | Index, Table]]:
         """Elements and their tables by rows of the motion; elements at a curved solid have more
-        rows than functions."""
-        table, second, spare = self.table, self.spines.second, self.spines.spare
+        rows than functions, and all have with three unknowns per control point."""
+        table, spare = self.table, self.spines.spare
         if len(self.spines.shifts):
             shifted = (self.spines.share[table.functions] != 0.0).any(axis=1)
             moving, still = np.flatnonzero(shifted), np.flatnonzero(~shifted)
             foot = [(still, table.part(still))] if len(still) else []
             return [*foot, (moving, self._with_shifts(table.part(moving)))]
-        more = second[table.functions] < spare
-        touching = more.any(axis=1)
+        touching = np.zeros(len(table.functions), bool)
+        for extra in self.spines.extra:
+            touching |= (extra[table.functions] < spare).any(axis=1)
         if not touching.any():
             return [(slice(None), table)]
+        if touching.all():
+            return [(slice(None), self._wide)]
         near, rest = np.flatnonzero(touching), np.flatnonzero(~touching)
-        columns = np.flatnonzero(more.any(axis=0))
         edge = table.part(near)
-        rows = edge.with_columns(columns, second[edge.functions[:, columns]])
-        return [(rest, table.part(rest)), (near, rows)]
+        return [(rest, table.part(rest)), (near, edge.with_columns(*self._extra(edge.functions)))]
+
+    def _extra(self, functions: Index) -> tuple[Index, Index]:
+        """Which local functions have further rows of the motion, and those rows."""
+        spare = self.spines.spare
+        columns, rows = [], []
+        for extra in self.spines.extra:
+            more = extra[functions]
+            own = np.flatnonzero((more < spare).any(axis=0))
+            columns.append(own)
+            rows.append(more[:, own])
+        return np.concatenate(columns), np.hstack(rows)
+
+    @cached_property
+    def _wide(self) -> Table:
+        """The table with three rows of the motion for every control point."""
+        return self.table.with_columns(*self._extra(self.table.functions))
+
+    @property
+    def _columns(self) -> Index:
+        """Which function belongs to each row of :attr:`_wide`."""
+        return np.tile(np.arange(self.table.functions.shape[1]), 3)
 
     def _with_shifts(self, table: Table) -> Table:
         if not len(self.spines.shifts):
@@ -536,6 +619,8 @@ class Assembly:
     @cached_property
     def _contact_rows(self) -> Table:
         assert self.contact is not None
+        if isinstance(self.spines, Cartesian):
+            return self._wide  # a penalty acts at the quadrature points
         return self._with_shifts(self.contact.table)
 
     def _edge(self, edge: str) -> EdgeTable:
@@ -543,10 +628,8 @@ class Assembly:
 
     def _edge_rows(self, edge: EdgeTable) -> EdgeTable:
         """An edge's table by rows of the motion."""
-        second, spare = self.spines.second, self.spines.spare
-        more = second[edge.functions]
-        columns = np.flatnonzero((more < spare).any(axis=0))
-        return edge.with_columns(columns, more[:, columns]) if len(columns) else edge
+        columns, rows = self._extra(edge.functions)
+        return edge.with_columns(columns, rows) if len(columns) else edge
 
     def _held_numbers(self, edge: EdgeTable) -> Index:
         """(elements, local) number of the gap constraint of each function, -1 for none."""
@@ -576,6 +659,26 @@ class Assembly:
             self.size - len(self.spines.shifts),
             [self.spines.unknowns[rows.functions] for _, rows in self._groups],
         )
+
+
+def _motion(scene: Scene, surface: Surface, supports: tuple[Support, ...]) -> Spines:
+    """The motion that a scene asks for."""
+    if scene.motion == "cartesian":
+        return Cartesian(surface, supports)
+    return Spines(surface, supports, scene.directions)
+
+
+def _same_contact(one: Contact | None, other: Contact | None) -> bool:
+    """Whether two scenes have the same solid and the same law of contact."""
+    if one is None or other is None or type(one.solid) is not type(other.solid):
+        return False
+    laws = [(c.penalty, c.depth, c.adhesion) for c in (one, other)]
+    fields = [vars(c.solid) for c in (one, other)]
+    return laws[0] == laws[1] and all(
+        np.array_equal(fields[0][key], fields[1][key])
+        for key in fields[0]
+        if not key.startswith("_")
+    )
 
 
 def _along(forces: Array, directions: Array, rows: Table | EdgeTable | LineTable) -> Array:

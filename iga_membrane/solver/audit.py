@@ -13,12 +13,21 @@ import numpy as np
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..solids import Sphere
+from ..splines import EdgeTable
 from ..surface.motion import Motion
 from ..surface.ring import rational_matrix
 from ..surface.sector import sector_table
 from ..surface.supports import Fixed, Sector, Symmetry
 from ..surface.surface import Surface
-from ..terms import BodyDensity, LineTerm, Pressure, SurfaceTension, Term, Volume
+from ..terms import (
+    BodyDensity,
+    LineTerm,
+    NormalLineLoad,
+    Pressure,
+    SurfaceTension,
+    Term,
+    Volume,
+)
 from .assembly import TINY
 from .contact import ContactSet
 from .contact_line import ContactLine, contact_line, vertical_forces
@@ -100,11 +109,15 @@ def audit(
         edge = space.edge_table(term.edge, 2 * points[0], ring)
         tangent = edge.d @ surface.points[edge.functions]
         x = edge.values @ surface.points[edge.functions]
+        if isinstance(term, NormalLineLoad):
+            scatter(total, absolute, motion, edge.functions, _pressed(term, edge, x, tangent))
+            continue
         up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if solid is None else solid.normal(x)
         outward = np.cross(tangent, up)
         # the reaction along the solid's normal carries the load and the flux of Q e_z at the edge
         load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
-        level = 0.5 * (_density(body, x) + body.constant) * x[..., 2]
+        under = BodyDensity() if scene.line_inside else body
+        level = 0.5 * (_density(under, x) + under.constant) * x[..., 2]
         density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
         pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
         scatter(total, absolute, motion, edge.functions, pull)
@@ -115,6 +128,12 @@ def audit(
         depth = _depth(surface, contact, points)
         weight = body.gradient[2] * inside
         carried = -sector.copies * float(push[..., 2].sum())
+        if scene.line_inside is not None:
+            line = contact_line(surface, scene.line_inside, 2 * points[0], solid)
+            young = -lines[0].strength / tension - 1.0
+            cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) - young
+            volume = missing_volume(terms, inside)
+            return Audit(residual, volume, angle=cosine, penetration=depth)
         missing = abs(carried + weight) / max(abs(weight), abs(carried), TINY)
         if not stands_free(scene):
             return Audit(residual, missing_volume(terms, inside), penetration=depth)
@@ -146,6 +165,17 @@ def audit(
         line=abs(forces.push - forces.measured - weight) / scale,
         angle=cosine,
         penetration=depth,
+    )
+
+
+def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) -> Array:
+    """(elements, local, 3) nodal forces of the normal line load, with its part of the gap."""
+    speed = np.linalg.norm(tangent, axis=-1, keepdims=True)
+    load = term.strength * edge.weights[..., None]
+    at = term.solid.nearest(x)
+    return np.asarray(
+        edge.values.transpose(0, 2, 1) @ (load * speed * at.normal)
+        + edge.d.transpose(0, 2, 1) @ (load * at.gap[..., None] * tangent / speed)
     )
 
 

@@ -97,7 +97,8 @@ def conclude(
         assert verdict is not None
         inside = volume(assembly, surface)
         status, message = _judge(scene, verdict, checked, inside)
-        if assembly.contact is not None or assembly.trim is not None:
+        on_area = assembly.contact is not None and scene.line_inside is None
+        if on_area or assembly.trim is not None:
             objection = _contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
@@ -297,7 +298,8 @@ def _contact(
 ) -> dict[str, Any]:
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
-    if assembly.contact is not None or assembly.trim is not None:
+    on_area = assembly.contact is not None and scene.line_inside is None
+    if on_area or assembly.trim is not None:
         return _footing(scene, assembly, result, found, checked)
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if line is None:

@@ -44,16 +44,18 @@ def contact_line(
 
     Parameters
     ----------
+    edge : of the patch, or a line inside it ("xi2=0.25"), there of the part behind it.
     solid : what the edge lies on; None is the plane z = 0.
     """
     space = surface.space
-    along, end = EDGES[edge]
+    along, place = space.edge_place(edge)
+    end = EDGES[edge][1] if edge in EDGES else 0
     basis = space.bases[along]
     u, w = gauss(points or space.degree + 1)
     t = (basis.breaks[:-1, None] + basis.sizes[:, None] * u).ravel()
     xi = np.empty((len(t), 2))
     xi[:, along] = t
-    xi[:, 1 - along] = space.bases[1 - along].breaks[-end]
+    xi[:, 1 - along] = place
     k = surface.at(xi, 1)
     speed = np.linalg.norm(k.tangents[:, along], axis=1)
     tangent = k.tangents[:, along] / speed[:, None]

@@ -21,7 +21,8 @@ from ..solids import Sphere
 from ..splines import points_of
 from ..surface.sector import mirrors
 from ..surface.surface import Surface
-from ..terms import BodyDensity
+from ..terms import BodyDensity, SphereContactLine
+from ..terms.variations import element_points, forces
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line, trimmed_line
 from .footing import footing
@@ -75,7 +76,8 @@ def line_on_sphere(scene: Scene, assembly: Assembly, surface: Surface) -> Contac
     if assembly.trim is not None:
         return trimmed_line(assembly.trim, surface, mirrors(scene.sector))
     assert isinstance(scene.substrate, Sphere)
-    return contact_line(surface, solid=scene.units.local_sphere(scene.substrate))
+    solid = scene.units.local_sphere(scene.substrate)
+    return contact_line(surface, scene.line_inside or "xi2=0", solid=solid)
 
 
 def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array) -> Pull:
@@ -94,6 +96,8 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
         return Pull(total, assembly.whole(pressed))
     (term, edge), body = assembly.lines[0], assembly.density(multipliers)
     points = surface.points
+    if isinstance(term, SphereContactLine) and term.covered:
+        return _pull_through(assembly, surface, term.edge)
     moment = term.energy(edge, points, 0.0, BodyDensity(1.0))
     x, dx = edge.values @ points[edge.functions], edge.d @ points[edge.functions]
     # vector area of the cap, and int z n dA: its horizontal parts by Stokes' theorem
@@ -111,6 +115,19 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
         total[i] -= assembly.work(surface, multipliers, along * np.eye(3)[i])
     whole = assembly.whole
     return Pull(whole(total), whole(pressure))
+
+
+def _pull_through(assembly: Assembly, surface: Surface, edge: str) -> Pull:
+    """The same where the membrane covers the sphere: its wetted part and the line are carried along
+    whole, so only the tension of the rest changes the energy."""
+    table, abscissae = assembly.table, surface.space.abscissae[..., 1]
+    _, line = surface.space.edge_place(edge)
+    fading = 1.0 - np.maximum(abscissae - line, 0.0) / (surface.space.bases[1].breaks[-1] - line)
+    along = points_of(surface.space, fading[..., None])[:, 0]
+    at = element_points(table, surface.points)
+    pull = forces(table, at, assembly.tension, BodyDensity())
+    total = -np.einsum("eai,ea->i", pull, along[table.functions])
+    return Pull(assembly.whole(total), np.zeros(3))
 
 
 def volume_over_cone(line: ContactLine, solid: Sphere) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from ..arrays import Array
 from ..scenes.scene import Scene
@@ -14,12 +13,14 @@ from ..surface.surface import Surface
 from ..terms import (
     BodyDensity,
     Gravity,
+    PlaneContactLine,
     Scale,
     SphereContactLine,
     SurfaceTension,
     TrimmedContactLine,
     Volume,
 )
+from ..terms import variations as vary
 from .apparent import apparent_angle, cassie_baxter_angle
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
@@ -42,14 +43,17 @@ def measures(
     """
     scale = scene.units
     values = energies(scene, assembly, surface)
+    if scene.line_inside is not None:
+        values |= _surface_energies(scene, assembly, surface, values)
     body = assembly.density(multipliers)
     values["pressure"] = -body.constant * scale.pressure
     ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
+    on_area = assembly.contact is not None and scene.line_inside is None
     values["volume"] = volume(assembly, surface) * scale.length**3 + ends
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
-    elif scene.kind == "sessile_droplet" and (assembly.contact or assembly.trim):
+    elif scene.kind == "sessile_droplet" and (on_area or assembly.trim is not None):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
         values |= _droplet(scene, surface, values["A_wet"], body, scale)
@@ -57,7 +61,7 @@ def measures(
         values |= _film(surface, body, scale)
         values["volume"] = values.pop("volume") - ends + _under_rings(surface) * scale.length**3
     elif scene.kind == "liquid_sheet":
-        values["V_liq"] = values.pop("volume") - ends
+        values["V_liq"] = values.pop("volume") - ends + _under_hole(scene, assembly, surface)
         values |= _sheet(scene, assembly, surface, multipliers)
     return {name: float(value) for name, value in values.items()}
 
@@ -78,6 +82,28 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
         "E_grav": copies * weight * scale.energy + lift,
         "A_LG": copies * area * scale.length**2,
         "A_wet": copies * wet * scale.length**2,
+    }
+
+
+def _surface_energies(
+    scene: Scene, assembly: Assembly, surface: Surface, values: dict[str, float]
+) -> dict[str, float]:
+    """Energies and areas where the membrane covers the wetted area, without penalty and
+    stabilization."""
+    scale, table = scene.units, assembly.table
+    (term, edge), edge_place = assembly.lines[0], surface.space.edge_place
+    assert isinstance(term, (PlaneContactLine, SphereContactLine))
+    at = vary.element_points(table, surface.points)
+    free = np.flatnonzero(table.parameters[:, 0, 1] > edge_place(term.edge)[1])
+    area, _ = vary.energies(table.part(free), at.part(free), [])
+    wet = term.energy(edge, surface.points, 1.0, BodyDensity())
+    gain = -(term.strength + term.gamma * term.covered)
+    e_surf = assembly.copies * (assembly.tension * area - gain * wet) * scale.energy
+    return {
+        "energy": e_surf + values["E_grav"],
+        "E_surf": e_surf,
+        "A_LG": assembly.copies * area * scale.length**2,
+        "A_wet": assembly.copies * wet * scale.length**2,
     }
 
 
@@ -193,6 +219,8 @@ def base_area(scene: Scene, found: Footing) -> float:
     if isinstance(solid, SphereLattice):
         return float(on_sphere.sum() * solid.area_per_sphere)
     if isinstance(solid, Spheres) and on_sphere.sum() >= 3:
+        from scipy.spatial import ConvexHull
+
         return float(ConvexHull(found.centers[on_sphere, :2]).volume)
     return float(found.projected.sum())
 
@@ -212,7 +240,7 @@ def _droplet(
     pole = scene.sector.model in ("quarter", "eighth")
     apex = surface.net[0, -1] if pole else _farthest(surface, lambda x: x[..., 2])
     solid = sphere_of(scene)
-    line = contact_line(surface, solid=solid)
+    line = contact_line(surface, scene.line_inside or "xi2=0", solid=solid)
     length = float(line.arc.sum())
 
     def pressure(z: float) -> float:
@@ -267,6 +295,19 @@ def _sheet(
         "F_CL_line": -float(line.conormal[:, 2] @ line.arc) * gamma * scale.force,
         "contact_angle_measured": float(np.degrees(line.angle @ line.arc / length)),
     }
+
+
+def _under_hole(scene: Scene, assembly: Assembly, surface: Surface) -> float:
+    """What the flux of ``z e_z`` through a covered sphere leaves out: the cap inside the fixed edge
+    of its membrane."""
+    line = assembly.lines[0][0] if assembly.lines else None
+    if not isinstance(line, SphereContactLine) or not line.covered:
+        return 0.0
+    sectors = np.arange(surface.space.bases[0].elements // assembly.copies)
+    table = surface.space.edge_table("xi2=0", elements=sectors)
+    cap = SphereContactLine(line.gamma, line.sphere)
+    inside = cap.energy(table, surface.points, 0.0, BodyDensity(1.0))
+    return assembly.copies * inside * scene.units.length**3
 
 
 def sphere_of(scene: Scene) -> Sphere | None:

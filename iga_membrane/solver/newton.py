@@ -295,7 +295,7 @@ def _search(
     if square > 0 and slope - kappa * square > -abs(slope):
         kappa = 2.0 * abs(slope) / square + 1.0
     slope -= kappa * square
-    uphill = direction.index > 0 and not direction.shift  # towards a saddle: no descent to ask for
+    uphill = (direction.index > 0 and not direction.shift) or not assembly.conservative
 
     def merit(total: float, missing: Array) -> float:
         return float(total - multipliers @ missing + 0.5 * kappa * missing @ missing)

@@ -20,6 +20,7 @@ from .load_stepping import LoadStep, load_stepping
 from .newton import NEAR, NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
 from .predictor import first
+from .quasi_static import quasi_static
 from .solution import Solution
 from .status import Status
 from .trace import walk
@@ -119,6 +120,8 @@ def _iterate(
 ) -> Outcome:
     """Direct Newton; load stepping where it failed or ended on a saddle; at last the nearest
     equilibrium of any kind, to tell an unstable state from none."""
+    if scene.motion == "cartesian":
+        return Outcome(scene, *quasi_static(scene, assembly, settings, report))
     if scene.free_edge is not None:
 
         def find(near: Scene) -> NewtonResult:

@@ -10,11 +10,13 @@ from typing import Literal
 from ..checks import number
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Ramp, Scene
+from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
-from .newton import NewtonOptions, NewtonResult
+from .newton import NEAR, NewtonOptions, NewtonResult
 from .options import SolverOptions
+from .predictor import first
 from .solution import Solution
 
 
@@ -89,10 +91,12 @@ def walk(
 ) -> list[Solution]:
     """Solutions at the ramp's values; the last one says how the walk ended."""
     started = process_time()
-    assembly = Assembly(ramp(0.0), options.quadrature)
     settings = NewtonOptions(
         options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
     )
+    if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
+        return _each(ramp, settings, options, started, report)
+    assembly = Assembly(ramp(0.0), options.quadrature)
     found: list[Solution] = []
 
     def reached(scene: Scene, state: NewtonResult) -> None:
@@ -105,6 +109,36 @@ def walk(
         assembly.load(path.scene)
         outcome = Outcome(path.scene, path.result, history, path.bracket)
         return [*found, conclude(outcome, assembly, options, started)]
+    return [*found[:-1], replace(found[-1], load_steps=tuple(history))]
+
+
+def _formulation(scene: Scene) -> frozenset[str]:
+    """How the membrane meets its solid: an assembly has one of them."""
+    return frozenset(t.name for t in scene.terms if isinstance(t, (Contact, TrimmedContactLine)))
+
+
+def _each(
+    ramp: Ramp,
+    settings: NewtonOptions,
+    options: SolverOptions,
+    started: float,
+    report: Callable[[float], None],
+) -> list[Solution]:
+    """Solutions at the ramp's values where its formulation changes, as between contact areas at 180
+    degrees and contact lines below: each from its own start, which its predictor brings near."""
+    found: list[Solution] = []
+    history: list[LoadStep] = []
+    for load in ramp.stops:
+        scene = ramp(load)
+        assembly = Assembly(scene, options.quadrature)
+        near = 0.0 if scene.kind == "sessile_droplet" else NEAR
+        state = first(scene, assembly, replace(settings, near=near))
+        history.append(LoadStep(load, len(state.iterations), state.status, ramp.value(load)))
+        found.append(conclude(Outcome(scene, state, []), assembly, options, started))
+        if not found[-1].success:
+            break
+        history[-1] = replace(history[-1], measures=dict(found[-1].measures))
+        report(load)
     return [*found[:-1], replace(found[-1], load_steps=tuple(history))]
 
 

@@ -78,12 +78,16 @@ class Trim:
         self.ties = Ties(space, elements, portion, self._faces, of_elements, size)
         self._points = space.degree + EXTRA
         self._known: list[tuple[Array, Outside]] = []
+        self._cores = np.zeros(0, int), np.zeros((0, 2)), np.zeros(0)
         self.begin()
 
+    def forget(self) -> None:
+        """Cut anew: the solid may have changed."""
+        self._known.clear()
+
     def begin(self) -> None:
-        """Free to choose again what is tied."""
+        """Free to choose again what is tied; spots are where they were."""
         self.ties.begin()
-        self._cores = np.zeros(0, int), np.zeros((0, 2)), np.zeros(0)
         self._known.clear()
 
     @property

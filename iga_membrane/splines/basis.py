@@ -8,7 +8,7 @@ live on which element, so everything above sees one class.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -212,12 +212,22 @@ def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) ->
     return Basis(degree, t, operators, functions, abscissae, 0, periodic)
 
 
-def line_basis(kind: str, elements: int, degree: int) -> Basis:
-    """Uniform basis on [0, 1]: ``kind`` "bspline" (of full smoothness) or "lagrange"."""
+def line_basis(kind: str, elements: int, degree: int, joints: Sequence[int] = ()) -> Basis:
+    """Uniform basis on [0, 1].
+
+    Parameters
+    ----------
+    kind : "bspline" (of full smoothness) or "lagrange".
+    joints : inner elements at whose start splines have continuity 0.
+    """
     breaks = np.linspace(0.0, 1.0, elements + 1)
     if kind == "lagrange":
         return lagrange_basis(breaks, degree)
-    return bspline_basis(open_knots(breaks, degree), degree)
+    if not joints:
+        return bspline_basis(open_knots(breaks, degree), degree)
+    kinks = tuple(float(breaks[j]) for j in joints)
+    knots = np.sort(np.concatenate([open_knots(breaks, degree), np.repeat(kinks, degree - 1)]))
+    return replace(bspline_basis(knots, degree, continuity=0), continuity=degree - 1, joints=kinks)
 
 
 def ring_basis(

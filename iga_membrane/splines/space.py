@@ -155,17 +155,18 @@ class Space:
 
         Parameters
         ----------
-        edge : "xi2=0" (along xi1), "xi2=1", "xi1=0" or "xi1=1" (along xi2).
+        edge : "xi2=0" (along xi1), "xi2=1", "xi1=0" or "xi1=1" (along xi2); also a line inside the
+            patch, "xi2=0.25", there with the values of the element behind it.
         elements : which elements of the edge's own direction, all if omitted.
         """
-        along, end = EDGES[edge]
+        along, place = self.edge_place(edge)
         u, w = gauss(points or self.degree + 1)
-        basis, other = self.bases[along], self.bases[1 - along]
+        basis = self.bases[along]
         chosen = np.arange(basis.elements) if elements is None else elements
         t = basis.breaks[chosen][:, None] + basis.sizes[chosen][:, None] * u
         xi = np.empty((t.size, 2))
         xi[:, along] = t.ravel()
-        xi[:, 1 - along] = other.breaks[-end]
+        xi[:, 1 - along] = place
         functions, rows = self.at(xi, 1)
         shape = (*t.shape, -1)
         key = (1, 0) if along == 0 else (0, 1)
@@ -175,6 +176,13 @@ class Space:
             rows[key].reshape(shape),
             basis.sizes[chosen][:, None] * w,
         )
+
+    def edge_place(self, edge: str) -> tuple[int, float]:
+        """The parameter along a line of :meth:`edge_table`, and the value of the other one."""
+        if edge in EDGES:
+            along, end = EDGES[edge]
+            return along, float(self.bases[1 - along].breaks[-end])
+        return 0, float(edge.removeprefix("xi2="))
 
     def edge_functions(self, edge: str) -> Index:
         """Numbers of the functions that do not vanish on an edge."""

@@ -10,13 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ellipj, ellipk
 
 from ..arrays import Array
 from ..splines import Space, points_of
 
-QUARTER = float(ellipk(0.5) / np.sqrt(2.0))
-"""A quarter period of the lemniscate sine."""
+QUARTER = 1.3110287771460598
+"""A quarter period of the lemniscate sine, ``K(m = 1/2) / sqrt(2)``."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +83,7 @@ class Stretch:
 
 def lemniscate_sine(x: Array, y: Array) -> Array:
     """``sl(QUARTER (x + i y))``, complex."""
+    from scipy.special import ellipj
 
     def real(u: Array) -> tuple[Array, Array]:
         s, c, d, _ = ellipj(np.sqrt(2.0) * QUARTER * u, 0.5)

@@ -75,6 +75,7 @@ class Spines:
     spare : number of a row without an unknown.
     second : (count,) the second row of each control point, or the spare row.
     held : (rows,) number of the gap constraint that belongs to a second row, else -1.
+    extra : arrays (count,) of the rows of each control point after its first, or the spare row.
     """
 
     def __init__(
@@ -127,6 +128,7 @@ class Spines:
         self.held: Index = np.concatenate([np.full(space.count, -1), seconds, [-1], -1 - 0 * last])
         self.second: Index = np.full(space.count, spare)
         self.second[edge] = space.count + np.arange(len(edge))
+        self.extra: list[Index] = [self.second]
         self._seams = [
             tuple(space.edge_functions(edge) for edge in support.edges)
             for support in supports

@@ -34,6 +34,7 @@ def ring_space(
     angle: float = 0.5 * np.pi,
     corners: bool = False,
     around: int | None = None,
+    kink: int | None = None,
 ) -> Space:
     """Open ring patch.
 
@@ -46,6 +47,8 @@ def ring_space(
     corners : four patches that meet on the diagonals with continuity 0, for a square rim; each
         eighth of the ring then has ``elements`` elements.
     around : elements round the ring, instead.
+    kink : element along the meridian at whose start splines have continuity 0: a contact line
+        inside the patch.
     """
     if around is None:
         around = 8 * elements if corners else 2 * elements
@@ -55,7 +58,7 @@ def ring_space(
         around = max(around, sectors * -(-(degree + 1) // sectors))
     joints = [around // 8 * k for k in (1, 3, 5, 7)] if corners else []
     ring = ring_basis(polynomial, around, degree, 2.0 * np.pi, joints)
-    meridian = line_basis(polynomial, elements, degree)
+    meridian = line_basis(polynomial, elements, degree, () if kink is None else (kink,))
     weights = None
     if kind == "nurbs":
         weights = np.broadcast_to(arc_weights(meridian, angle), (ring.count, meridian.count))
@@ -70,12 +73,15 @@ def drop_space(
     *,
     angle: float = 0.5 * np.pi,
     around: int | None = None,
+    kink: int | None = None,
 ) -> Space:
     """Ring patch closed by a pole: ``xi2`` runs from the rim (0) to the pole (1).
 
     Parameters are those of :func:`ring_space`.
     """
-    return close_pole(ring_space(kind, degree, elements, sectors, angle=angle, around=around))
+    return close_pole(
+        ring_space(kind, degree, elements, sectors, angle=angle, around=around, kink=kink)
+    )
 
 
 def arc_weights(meridian: Basis, angle: float) -> Array:

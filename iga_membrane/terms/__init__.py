@@ -4,7 +4,9 @@ from .contact import Contact
 from .contact_line import PlaneContactLine
 from .edge_gap import EdgeGap
 from .gravity import Gravity
+from .line_load import NormalLineLoad
 from .sphere_wetting import SphereContactLine
+from .stabilization import Stabilization
 from .tension import SurfaceTension
 from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term
 from .trimmed import TrimmedContactLine
@@ -20,10 +22,12 @@ __all__ = [
     "EdgeGap",
     "Gravity",
     "LineTerm",
+    "NormalLineLoad",
     "PlaneContactLine",
     "Pressure",
     "Scale",
     "SphereContactLine",
+    "Stabilization",
     "SurfaceTension",
     "Term",
     "TrimmedContactLine",

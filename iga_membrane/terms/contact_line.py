@@ -5,7 +5,7 @@ The wetted part of z = 0 adds nothing to body integrals, so ``body`` is not used
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,25 +28,29 @@ class PlaneContactLine(LineTerm):
     gamma : surface tension.
     contact_angle : Young's angle in degrees, through the liquid.
     edge : edge of the membrane that slides on the plane.
+    covered : whether the membrane, with its tension, covers the wetted area too: gamma_SL = gamma
+        and gamma_SG = gamma (1 + cos(theta)) in paper eq. (32); ``edge`` is then a line inside it.
     """
 
     gamma: float
     contact_angle: float
     edge: str = "xi2=0"
+    covered: bool = False
     name = "wetting"
 
     def __post_init__(self) -> None:
         number("liquid.surface_tension", self.gamma, above=0.0)
         contact_angle("substrate.contact_angle", self.contact_angle)
-        choice("edge", self.edge, LINE_EDGES)
+        if not self.covered:
+            choice("edge", self.edge, LINE_EDGES)
 
     @property
     def strength(self) -> float:
         """Energy per wetted area."""
-        return float(-self.gamma * np.cos(np.radians(self.contact_angle)))
+        return float(-self.gamma * (np.cos(np.radians(self.contact_angle)) + self.covered))
 
     def scaled(self, scale: Scale) -> PlaneContactLine:
-        return PlaneContactLine(self.gamma / scale.tension, self.contact_angle, self.edge)
+        return replace(self, gamma=self.gamma / scale.tension)
 
     def energy(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> float:
         return strength * wetted_area(table, points)

@@ -9,7 +9,7 @@ the sphere: the line itself is held on the sphere by :class:`.edge_gap.EdgeGap`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -31,25 +31,28 @@ class SphereContactLine(LineTerm):
     gamma : surface tension.
     sphere : with its contact angle.
     edge : edge of the membrane that slides on the sphere.
+    covered : as for :class:`.contact_line.PlaneContactLine`.
     """
 
     gamma: float
     sphere: Sphere
     edge: str = "xi2=0"
+    covered: bool = False
     name = "wetting"
 
     def __post_init__(self) -> None:
         number("liquid.surface_tension", self.gamma, above=0.0)
-        choice("edge", self.edge, LINE_EDGES)
+        if not self.covered:
+            choice("edge", self.edge, LINE_EDGES)
 
     @property
     def strength(self) -> float:
-        return float(-self.gamma * np.cos(np.radians(self.sphere.contact_angle)))
+        cosine = np.cos(np.radians(self.sphere.contact_angle))
+        return float(-self.gamma * (cosine + self.covered))
 
     def scaled(self, scale: Scale) -> SphereContactLine:
-        return SphereContactLine(
-            self.gamma / scale.tension, scale.local_sphere(self.sphere), self.edge
-        )
+        sphere = scale.local_sphere(self.sphere)
+        return replace(self, gamma=self.gamma / scale.tension, sphere=sphere)
 
     def energy(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> float:
         at = self._line(table, points, strength, body)
@@ -123,7 +126,7 @@ class SphereContactLine(LineTerm):
         ``-int Q N_z dA`` with ``Q = int_0^z e dz`` and ``e = e0 + ez z``.
         """
         r, c = self.sphere.radius, self.sphere.center[2]
-        e0, ez = body.constant, body.gradient[2]
+        e0, ez = (0.0, 0.0) if self.covered else (body.constant, body.gradient[2])
         # -Q(c + r t) t r^2 as a polynomial k1 t + k2 t^2 + k3 t^3, to be integrated from t to 1
         k1 = -(r**2) * (e0 * c + 0.5 * ez * c * c)
         k2 = -(r**3) * (e0 + ez * c)

@@ -18,7 +18,7 @@ the gap along ``h``. The wetted side itself never enters.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,7 +43,8 @@ class TrimmedContactLine(Term):
     Attributes
     ----------
     gamma : surface tension.
-    solid : sphere, lattice or list of spheres, with its contact angles.
+    solid : sphere, lattice or list of spheres, with its contact angles; a plane under them is left
+        out, no line is computed on it.
     """
 
     gamma: float
@@ -52,6 +53,8 @@ class TrimmedContactLine(Term):
 
     def __post_init__(self) -> None:
         number("liquid.surface_tension", self.gamma, above=0.0)
+        if isinstance(self.solid, (SphereLattice, Spheres)) and self.solid.base is not None:
+            object.__setattr__(self, "solid", replace(self.solid, base=None))
 
     def scaled(self, scale: Scale) -> TrimmedContactLine:
         return TrimmedContactLine(self.gamma / scale.tension, scale.local_solid(self.solid))

@@ -192,8 +192,13 @@ def _hessian(
     return np.asarray(half + half.transpose(0, 2, 1))
 
 
-def mass(table: Table, at: ElementPoints, directions: Array) -> Array:
-    """(elements, local, local) ``int (u_a . n)(u_b . n) dA`` of normal displacements."""
+def mass(table: Table, at: ElementPoints, directions: Array, *, full: bool = False) -> Array:
+    """(elements, local, local) ``int (u_a . n)(u_b . n) dA`` of normal displacements, or
+    ``int u_a . u_b dA`` if ``full``."""
+    if full:
+        weighted = table.values * (at.area * table.weights)[..., None]
+        gram = directions @ directions.transpose(0, 2, 1)
+        return np.asarray(weighted.transpose(0, 2, 1) @ table.values * gram)
     normal = (at.c / at.area[..., None]) @ directions.transpose(0, 2, 1)
     rows = table.values * normal
     weighted = rows * (at.area * table.weights)[..., None]

@@ -85,8 +85,10 @@ def plot(
     opacity = 0.7 if traction else 1.0
     plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
     _substrate(plotter, pv, solution)
-    if solution.scene.substrate is not None and not through and not _on_an_area(solution):
-        line = contact_line(solution.surface.moved(_local(solution)))
+    inside = solution.scene.line_inside
+    on_edge = not through and not _on_an_area(solution)
+    if solution.scene.substrate is not None and (inside or on_edge):
+        line = contact_line(solution.surface.moved(_local(solution)), inside or "xi2=0")
         world = solution.scene.units.to_world(line.position)
         curve = pv.lines_from_points(np.vstack([world, world[:1]]))
         plotter.add_mesh(curve.tube(radius=0.008 * length), color="#cc0000")
@@ -247,8 +249,10 @@ def _substrate(plotter: Any, pv: Any, solution: Solution) -> None:
         _asperities(plotter, pv, solution)
         return
     if isinstance(substrate, Sphere):
+        # a membrane that covers the sphere and has sunk into it is shown on top
+        sunk = solution.contact.get("max_penetration") if solution.scene.line_inside else None
         solid = pv.Sphere(
-            radius=substrate.radius,
+            radius=substrate.radius - 1.5 * (sunk or 0.0),
             center=substrate.center,
             theta_resolution=120,
             phi_resolution=120,

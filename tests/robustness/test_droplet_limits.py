@@ -47,3 +47,11 @@ def test_the_whole_family_on_a_grid(angle, bond):
     solution = iga.solve(droplet(angle, bond))
     extreme = not 10 < angle < 170 or bond >= 60
     assert worst(solution.measures, drop_on_plane(bond, angle)) <= (1e-3 if extreme else 1e-6)
+
+
+def test_a_penalty_too_hard_for_newton_ends_with_a_name():
+    scene = iga.sessile_droplet(iga.Plane(180.0), volume=UNIT_VOLUME, gravity=1.0, penalty=1e9)
+    found = iga.solve(scene, on_fail="return")
+    assert found.status in (iga.Status.STALLED, iga.Status.MAX_ITER, iga.Status.CONVERGED_STABLE)
+    if not found.success:
+        assert found.message

@@ -142,7 +142,7 @@ def test_misspelt_keys_are_refused(path, said):
         ("scene", "liquid_sheet", "substrate: does not belong"),
         ("particle", [{"radius": 1.0}], "[[particle]]: not available yet"),
         ("solver.contact", "penalty", "not available yet"),
-        ("solver.contact_line", "line_load", "not available yet"),
+        ("solver.contact_line", "adhesion", "not available here"),
         ("solver.start", "flat", "only at 180 degrees"),
         ("solver.start", "state.npz", "not available yet"),
         ("substrate.base", -0.1, "a plane has no such field"),

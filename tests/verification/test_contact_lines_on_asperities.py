@@ -158,17 +158,19 @@ def test_the_papers_droplet_at_other_angles(angle, wet):
 
 
 def test_an_angle_for_each_sphere():
-    """Two spheres of a pair with their own angles: each line meets its own."""
-    centers = [[-0.12, 0.0, -0.1], [0.12, 0.0, -0.1], [0.0, 0.2, -0.1], [0.0, -0.2, -0.1]]
-    angles = [140.0, 140.0, 155.0, 155.0]
+    """Each line meets its own sphere's angle."""
+    near, far = 0.15, 0.45
+    places = [(near, near), (near, far), (far, near)]
+    centers = [[sx * x, sy * y, -0.1] for x, y in places for sx in (1, -1) for sy in (1, -1)]
+    angles = [140.0] * 4 + [150.0] * 8
     substrate = iga.Spheres(angles, centers, 0.1)
     solution = iga.solve(
-        iga.sessile_droplet(substrate, volume=4.0 * np.pi / 3.0, gravity=0.3), on_fail="return"
+        iga.sessile_droplet(substrate, volume=4.0 * np.pi / 3.0, gravity=1.0), on_fail="return"
     )
     assert solution.success, solution.message
     for asperity in solution.contact["asperities"]:
         expected = angles[asperity["index"]]
-        assert asperity["contact_angle"] == pytest.approx(expected, abs=1.0)
+        assert asperity["contact_angle"] == pytest.approx(expected, abs=1.5)
 
 
 def test_a_penalty_is_refused_where_there_are_contact_lines():
@@ -206,9 +208,35 @@ def test_angles_near_180_degrees_tend_to_exact_contact():
         off = abs(near["energy"] - whole["energy"])
         # wetting gains gamma (1 + cos(theta)) of energy per area
         gain = (1.0 + np.cos(np.radians(angle))) * whole["A_wet"]
-        assert off == pytest.approx(gain, rel=0.1)
+        assert off == pytest.approx(gain, rel=0.25)
         assert off < 0.5 * last
         assert near["height"] == pytest.approx(whole["height"], abs=2e-5)
         last = off
     last = iga.solve(papers_droplet(179.9)).measures
     assert last["energy"] == pytest.approx(whole["energy"], abs=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("angle", "most"), [(150.0, 8.997), (120.0, 6.956), (100.0, 5.245)])
+def test_a_square_cell_is_lost_at_the_pressure_of_a_round_line(angle, most):
+    """Vertical equilibrium with a round contact line estimates the de-pinning pressure."""
+    lost = iga.solve(cell(angle, 1.1 * most, shape="square"), on_fail="return")
+    assert lost.status is iga.Status.LIMIT_POINT
+    assert lost.bracket.lo == pytest.approx(most, rel=3e-3)
+    assert lost.bracket.hi == pytest.approx(most, rel=3e-3)
+
+
+@pytest.mark.slow
+def test_the_liquid_that_comes_down_to_the_base_is_named():
+    """Wenzel onset: the membrane between the asperities touches the plane under them."""
+    free = iga.solve(papers_droplet(150.0))
+    x = free.surface.at(
+        np.stack(np.meshgrid(*[np.linspace(-0.3, 0.3, 241)] * 2, indexing="ij"), axis=-1), 1
+    ).position
+    outside = free.scene.substrate.nearest(x).gap > 0
+    lowest = float(x[..., 2][outside].min())
+    low = iga.solve(papers_droplet(150.0, base=lowest - 1e-3), on_fail="return")
+    assert low.success
+    high = iga.solve(papers_droplet(150.0, base=lowest + 1e-3), on_fail="return")
+    assert high.status is iga.Status.TOPOLOGY_CHANGE
+    assert high.kind == "touches_base"
