@@ -86,8 +86,8 @@ def plot(
     plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
     _substrate(plotter, pv, solution)
     inside = solution.scene.line_inside
-    edge = inside is not None or not _on_an_area(solution)
-    if solution.scene.substrate is not None and edge and not through:
+    on_edge = not through and not _on_an_area(solution)
+    if solution.scene.substrate is not None and (inside or on_edge):
         line = contact_line(solution.surface.moved(_local(solution)), inside or "xi2=0")
         world = solution.scene.units.to_world(line.position)
         curve = pv.lines_from_points(np.vstack([world, world[:1]]))
