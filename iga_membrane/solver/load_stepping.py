@@ -14,6 +14,7 @@ from ..errors import GeometryError
 from ..scenes.scene import Ramp, Scene
 from ..surface.reparametrize import regridded
 from .assembly import Assembly
+from .footing import footing
 from .linear import SingularMatrix
 from .newton import NewtonOptions, NewtonResult, newton
 from .predictor import first
@@ -24,7 +25,8 @@ from .status import Status
 @dataclass(frozen=True)
 class LoadStep:
     """One attempted load: the parameter's value there, the Newton iterations and how they ended
-    (None: converged); on a path that was asked for, the measures at its values."""
+    (None: converged); on a path that was asked for, the measures at its values, and where contact
+    lines lie inside the membrane the wet set of every step and its energy."""
 
     load: float
     iterations: int
@@ -141,7 +143,8 @@ def load_stepping(
         scene = ramp(0.0)
         assembly.load(scene)
         result = first(scene, assembly, options)
-        begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0))
+        wet = _wet_set(assembly, scene, result)
+        begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0), wet)
         path, step = LoadPath(result, scene, [begun]), 0.25
         if result.status is not None:
             return path
@@ -153,7 +156,8 @@ def load_stepping(
         load = min(stop, path.last_good + step)
         scene = ramp(load)
         result = _attempt(assembly, path, scene, attempts)
-        tried = LoadStep(load, len(result.iterations), result.status, ramp.value(load))
+        wet = _wet_set(assembly, scene, result)
+        tried = LoadStep(load, len(result.iterations), result.status, ramp.value(load), wet)
         path.steps.append(tried)
         if result.status is None and result.index <= 0:
             path.result, path.scene, path.last_good = result, scene, load
@@ -198,6 +202,17 @@ def _resumed(
     result = replace(start.result, iterations=list(start.result.iterations))
     path = LoadPath(result, scene, list(start.steps), start.load, progress=start)
     return path, start.step, start.found
+
+
+def _wet_set(assembly: Assembly, scene: Scene, state: NewtonResult) -> dict[str, float] | None:
+    """How many asperities have a contact line and the energy with them: several equilibria exist,
+    and which one is met is a matter of the path."""
+    if assembly.trim is None or state.status is not None:
+        return None
+    body = assembly.density(state.multipliers)
+    feet = footing(scene, assembly, state.surface, body)
+    energy = float(assembly.copies * assembly.energy(state.surface) * scene.units.energy)
+    return {"wet_solids": float(len(feet.which)), "energy": energy}
 
 
 BRACKET = 4e-4
