@@ -254,14 +254,14 @@ the same limit within 1e-4, as near as these meshes and brackets tell. More angl
         """## The paper's droplet
 
 Volume 4 pi / 3 (R = 1), Bond number 1, spacing 0.2, eighth model; the default mesh (75 elements at
-180 degrees, more below) and 96 elements, below 130 degrees the default mesh only; 150 CPU seconds
+180 degrees, 85 below) and 96 elements, below 130 degrees the default mesh only; 150 CPU seconds
 are allowed. The angle is the mean along each line, of all wet asperities the one that is worst off;
 at 175 degrees the membrane lies on spheres that attract it, and no angle is measured. Where a solve
 has failed the numbers are those of the state that was reached.
 
 The wet set grows as the angle falls: 45 asperities, four more (on the axes) from 150 degrees, eight
 more from 130. Below 135 degrees the state is continued from there, and the step in which eight
-asperities snap in at once takes most of the iterations; on the finer mesh it stalls.""",
+asperities snap in at once takes most of the iterations.""",
         droplets,
     ),
 }

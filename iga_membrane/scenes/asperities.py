@@ -23,6 +23,9 @@ PER_RADIUS = 3.35
 """Elements along the radius of the smallest asperity, by default."""
 FEWEST = 48
 """Elements from the middle to a side at least, for the droplet itself."""
+SOFTEST, HARDEST = 0.032, 500.0
+"""Depth over radius of a penalty from which on the default mesh must be finer, by the power 0.51 of
+the depth, for its dips to stay below a fifth of it; and the elements at most that this asks for."""
 MOST = 600
 """The same at most, by default."""
 SPREAD = 1.15
@@ -56,6 +59,7 @@ def whole_skin(
     elements: int,
     lies: bool = True,
     start: object = None,
+    stiffness: float = 0.0,
 ) -> Skin:
     """Flat-footed droplet of least energy, its foot meshed evenly.
 
@@ -68,6 +72,8 @@ def whole_skin(
     lies : whether the membrane lies on the asperities; where it passes through them, below 180
         degrees, more of them are wet.
     start : "above" or "touching" for a sphere; anything else for the flat-footed droplet.
+    stiffness : traction over depth of a penalty, 0 without: the mesh is then as fine as the depth
+        asks for.
     """
     pancake = least_energy_pancake(180.0, bond, volume, steepest=180.0)
     pressure = estimated_pressure(pancake, bond, volume)
@@ -82,6 +88,9 @@ def whole_skin(
         # physical length of the even elements, times their number
         across = wide / reach * stretch.slope
         needed = PER_RADIUS * across / length
+        if stiffness:
+            sunk = (pressure + 2.0 / length) / stiffness / length
+            needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
         if needed > MOST:
             raise SceneError(
                 f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "

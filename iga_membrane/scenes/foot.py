@@ -135,7 +135,9 @@ def _on_an_area(parts: Question) -> Foot:
     least = float(np.min(substrate.contact_angle))
     attracts = parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP)
     lies = attracts or least == 180.0
-    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, lies, parts.start)
+    unit_law = scale.length**2 / scale.tension
+    stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
+    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, lies, parts.start, stiffness)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):

@@ -152,10 +152,15 @@ class Assembly:
             return None
         elements, portion = sector_elements(self._space, scene.sector)
         unknowns = self.spines.unknowns
+        at = vary.element_points(self.table, self._start.points)
+        close = (term.solid.nearest(at.x).gap < 2.0 * term.solid.scale).any(axis=1)
+        size = np.sqrt((at.area * self.table.weights).sum(axis=1) / portion)
+        element = float(np.median(size[close])) / term.solid.scale if close.any() else 1.0
         images = mirrors(scene.sector)
         return Trim(
-            term, self._space, self.table, elements, portion, images, unknowns, self.spines.size
-        )
+            term, self._space, self.table, elements, portion, images, element, unknowns,
+            self.spines.size,
+        )  # fmt: skip
 
     def load(self, scene: Scene) -> None:
         """Take the terms of another scene of the same space, whose supports move the same edges."""

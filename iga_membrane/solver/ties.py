@@ -17,8 +17,11 @@ from ..arrays import Array, Index, Mask
 from ..splines import Faces, Space, jumps
 
 STRENGTH = 0.004, 0.02
-"""Factor of the jumps' energy over the tension: least, and at 45 degrees to the solid, where it is
-steadier. The error of a line's angle grows with it, and with the square of 1 / angle."""
+"""Factor of the jumps' energy over the tension: least, and at 45 degrees to the solid on a coarse
+mesh, where it is steadier. The error of a line's angle grows with it, and with the square of
+1 / angle."""
+COARSE = 0.3
+"""Element over the contact length of a coarse mesh."""
 FREE = 5
 """Iterations after which elements stay tied that no longer need it: they could alternate for
 ever."""
@@ -52,9 +55,12 @@ class Ties:
         self._space, self._elements, self._portion = space, elements, portion
         self._faces, self._unknowns, self._size = faces, unknowns, size
 
-    def begin(self, steepness: float) -> None:
-        """Free to choose again, for a membrane that meets its solid at an angle (radians)."""
-        self.strength = float(np.clip(STRENGTH[1] * (steepness / (0.25 * np.pi)) ** 2, *STRENGTH))
+    def begin(self, steepness: float, element: float) -> None:
+        """Free to choose again, for a membrane that meets its solid at an angle (radians), with
+        elements of a size over the contact length."""
+        steep = min(steepness / (0.25 * np.pi), 1.0)
+        wanted = STRENGTH[1] * (steep * element / COARSE) ** 2
+        self.strength = float(np.clip(wanted, *STRENGTH))
         none = np.zeros(len(self._elements), bool)
         self._held, self._touched, self._last = none, none, (none, none)
         self._calls = 0

@@ -56,6 +56,7 @@ class Trim:
     table : functions of the sector's elements at ordinary quadrature points.
     elements, portion : (elements,) of the space, and the portion of each that is in the sector.
     images : matrices (3, 3) that carry the sector to each of its images.
+    element : size of the elements at the solid over the contact length.
     unknowns : (rows,) unknown of each control point, -1 for none; size : their number.
     """
 
@@ -67,12 +68,13 @@ class Trim:
         elements: Index,
         portion: Array,
         images: list[Array],
+        element: float,
         unknowns: Index,
         size: int,
     ) -> None:
         self.term, self.space, self.table = term, space, table
         self.elements, self.portion = elements, portion
-        self._images = images
+        self._images, self._element = images, element
         self._faces = faces_between(space, elements)
         of_elements = unknowns[table.functions]
         self.ties = Ties(space, elements, portion, self._faces, of_elements, size)
@@ -88,7 +90,7 @@ class Trim:
     def begin(self) -> None:
         """Free to choose again what is tied; spots are where they were."""
         least = float(np.min(self.term.solid.contact_angle))
-        self.ties.begin(np.pi - np.radians(least))
+        self.ties.begin(np.pi - np.radians(least), self._element)
         self._known.clear()
 
     @property

@@ -204,6 +204,8 @@ def started(where, pause, points, workers, **options):
     command = [sys.executable, str(HERE / "sweep_scenes.py"), str(where), *map(str, (pause, points,
                workers))]  # fmt: skip
     return subprocess.Popen(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            # run in the background, the tests ignore interrupts
+                            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
                             **options)  # fmt: skip
 
 

@@ -284,7 +284,11 @@ def test_one_interrupt_is_enough_and_leaves_valid_files(tmp_path, delay):
     scene, out = tmp_path / "scene.toml", tmp_path / "out"
     scene.write_text(SLOW)
     command = [sys.executable, "-m", "iga_membrane", "solve", str(scene), "--out", str(out)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    # a test run in the background ignores interrupts, and its children would inherit that
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )  # fmt: skip
     deadline = time.monotonic() + 60
     while not (out / "state.npz").exists():
         assert process.poll() is None

@@ -107,6 +107,14 @@ def test_a_penalty_sinks_by_the_pressure_over_it():
     assert "penetration_tolerance" in refused.message
 
 
+@pytest.mark.parametrize("penalty", [5e4, pytest.param(2e5, marks=pytest.mark.slow)])
+def test_a_hard_penalty_has_a_mesh_that_dips_less_than_it_sinks(penalty):
+    solution = rough(penalty=penalty, penetration_tolerance=0.2)
+    assert solution.success, solution.message
+    sunk = (solution.measures["p_base"] + 2.0 / RADIUS) / penalty
+    assert solution.contact["max_penetration"] == pytest.approx(sunk, rel=0.2)
+
+
 def test_the_papers_penalty_lowers_the_droplet():
     solution = rough(penalty=1e4, penetration_tolerance=0.2)
     assert solution.success
