@@ -173,9 +173,9 @@ def main() -> None:
         "## Exact contact against a penalty, r_s = 0.05",
         "",
         "Penalty as in paper eq. (24), in units of tension over R squared; default mesh; a "
-        "penetration of 0.2 r_s is allowed. The prediction is (p + 2 gamma / r_s) / penalty. It "
-        "holds while that is larger than what the membrane dips between quadrature points, about "
-        "5e-3 r_s on this mesh.",
+        "penetration of 0.2 r_s is allowed. The prediction is (p + 2 gamma / r_s) / penalty. The "
+        "default mesh of a hard penalty is finer, so that the membrane dips less between quadrature "
+        "points than a fifth of it.",
         "",
         *against_penalty(),
         "",
