@@ -174,8 +174,8 @@ def main() -> None:
         "",
         "Penalty as in paper eq. (24), in units of tension over R squared; default mesh; a "
         "penetration of 0.2 r_s is allowed. The prediction is (p + 2 gamma / r_s) / penalty. The "
-        "default mesh of a hard penalty is finer, so that the membrane dips less between quadrature "
-        "points than a fifth of it.",
+        "default mesh of a hard penalty is finer, so that the membrane dips less between "
+        "quadrature points than a fifth of it.",
         "",
         *against_penalty(),
         "",
