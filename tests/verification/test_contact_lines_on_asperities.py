@@ -131,9 +131,11 @@ def papers_droplet(angle, elements=None, **lattice):
 
 
 def assert_balanced(solution, angle):
+    # near 180 degrees the membrane leaves so flat that the same error of the cosine is more degrees
+    near = 1.0 if angle <= 150.0 else 1.5
     assert solution.contact["support_force"] == pytest.approx(4.0 * np.pi / 3.0, rel=1e-5)
     for asperity in solution.contact["asperities"]:
-        assert asperity["contact_angle"] == pytest.approx(angle, abs=1.0)
+        assert asperity["contact_angle"] == pytest.approx(angle, abs=near)
 
 
 def test_the_papers_droplet_at_150_degrees_touches_49_asperities():
