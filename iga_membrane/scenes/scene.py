@@ -102,7 +102,8 @@ class Scene:
     predictor : a scene of the same space whose equilibrium is near this one's; contact lines start
         from it.
     free_edge : the way to find a fixed edge's place at 180 degrees.
-    substrate : the solid that the membrane touches, for its kind, forces and pictures.
+    substrate : the solid that the membrane touches, for its kind and pictures.
+    particles : spheres on which it pulls too.
     hold : axes along which the user asked for the centroid to be held.
     particle_pull : acceleration along -z that weighs a particle and the liquid on it.
     liquid_density : of that liquid.
@@ -122,6 +123,7 @@ class Scene:
     predictor: Scene | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
+    particles: Sequence[Sphere] = ()
     hold: str = ""
     particle_pull: float = 0.0
     liquid_density: float = 0.0
@@ -254,3 +256,14 @@ class Scene:
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""
         return tuple(term.scaled(self.units) for term in self.terms)
+
+
+def described_particle(particle: Sphere) -> dict[str, Any]:
+    """A particle by the names of the scene file."""
+    return {
+        "radius": particle.radius,
+        "center": list(particle.center),
+        "density": particle.density,
+        "contact_angle": particle.contact_angle,
+        "motion": "fixed",
+    }

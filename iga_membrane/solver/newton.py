@@ -40,6 +40,9 @@ begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
 step, and before; less while it rolls to and fro."""
+STILL = 0.02
+"""Step after which the spines of a membrane that passes through solids stay as they are: what lies
+inside follows them, and they it."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -154,13 +157,15 @@ def _iterate(
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
     steady, reach = False, ROLL
+    motion, size = None, np.inf
     way: Array = np.zeros(3)
     roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
-        motion = assembly.spines.on(result.surface)
+        if motion is None or assembly.trim is None or size > STILL:
+            motion = assembly.spines.on(result.surface)
         result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
@@ -177,7 +182,7 @@ def _iterate(
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
-        displacement = motion.displacement(assembly.extended(direction.step))
+        displacement = assembly.displacement(motion, direction.step)
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")

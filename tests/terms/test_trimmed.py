@@ -32,7 +32,7 @@ def state(scene, seed, sunk):
         0.02 * scene.substrate.radius / scene.units.length * random.standard_normal(assembly.size)
     )
     surface = surface.moved(surface.points + motion.displacement(step) - [0.0, 0.0, sunk])
-    surface = assembly.relaxed(surface, motion)
+    surface = assembly.relaxed(surface, assembly.spines.on(surface))
     return assembly, surface, motion, random
 
 
