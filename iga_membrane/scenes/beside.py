@@ -16,9 +16,10 @@ from ..arrays import Array
 from ..checks import record
 from ..errors import SceneError
 from ..solids import Sphere, SphereLattice, Spheres
-from ..splines import points_of
+from ..splines import ring_angles
 from ..surface.closed import Meridian
-from ..surface.ring import drop_space
+from ..surface.reparametrize import interpolated
+from ..surface.ring import drop_space, meridian_interpolation
 from ..surface.surface import Surface
 from .liquid import MODELS, Mesh, Model
 from .start import Pancake
@@ -129,9 +130,7 @@ def mirrored_model(particles: Sequence[Sphere], smallest: Model) -> Model:
     return MODELS[min(kept, MODELS.index(smallest))]
 
 
-def patch_round(
-    pancake: Pancake, particles: Sequence[Sphere], mesh: Mesh, sectors: int
-) -> Surface:
+def patch_round(pancake: Pancake, particles: Sequence[Sphere], mesh: Mesh, sectors: int) -> Surface:
     """A droplet on the plane z = 0, the pole of its patch in the smallest of the particles.
 
     Parameters
@@ -167,12 +166,14 @@ def patch_round(
             along = max(along, int(np.ceil(ACROSS * size / each.radius)) if abs(zeta) else 0)
     around = int(np.ceil(along * 2.0 * np.pi / span / sectors)) * sectors
     space = drop_space("bspline", mesh.degree, along, sectors, around=around)
-    ring, line = space.bases
-    turn = 2.0 * np.pi * ring.abscissae / (ring.breaks[-1] - ring.breaks[0])
-    size = spot * np.sinh(span * (1.0 - line.abscissae))
-    net = at(size * np.exp(1j * turn)[:, None])
-    net[:, 0, 2] = 0.0
-    return Surface(space, points_of(space, net))
+    points, matrix = meridian_interpolation(space)
+    turn = np.exp(1j * ring_angles(space))[:, None]
+    values = at(spot * np.sinh(span * (1.0 - points)) * turn)
+    values[:, 0, 2] = 0.0
+    # in its place the derivative at the pole, against which the ring shrinks
+    step = 1e-3 * spot
+    values[:, -2] = (at(np.zeros(1)) - at(step * turn[:, 0])) * (spot * span / step)
+    return interpolated(space, values, matrix)
 
 
 def _meridian(pancake: Pancake) -> Meridian:

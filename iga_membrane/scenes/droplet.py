@@ -23,6 +23,7 @@ from ..terms import (
     Term,
     Volume,
 )
+from .beside import check_particles
 from .foot import (
     CONTACT_LINES,
     PREDICTABLE,
@@ -33,7 +34,6 @@ from .foot import (
     with_angle,
     with_rim,
 )
-from .beside import check_particles
 from .liquid import Discretization, Liquid, with_defaults
 from .scene import FreeEdge, Ramp, Scene, described_particle
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
@@ -156,6 +156,8 @@ def sessile_droplet(
         ramp=ramp,
         substrate=substrate,
         particles=grains,
+        acceleration=vector("gravity", acceleration),
+        liquid_density=liquid.density,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
@@ -163,6 +165,9 @@ def sessile_droplet(
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
+    if built.predictor and isinstance(substrate, Plane):
+        held = [t for t in terms if not isinstance(t, Centroid)]
+        return replace(scene, predictor=replace(scene, terms=[*held, *built.predictor], ramp=None))
     if built.predictor:
         return _with_start(scene, terms, built)
     if not built.tangent:

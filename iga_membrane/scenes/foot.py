@@ -16,6 +16,7 @@ from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
+    Centroid,
     Contact,
     LineTerm,
     PlaneContactLine,
@@ -60,7 +61,7 @@ class Foot:
     mesh: Mesh
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
     predictor: Sequence[Term] = ()
@@ -139,7 +140,11 @@ def _with_particles(parts: Question) -> Foot:
     toward = towards_liquid(start, local, 1.0) @ scale.axes.T
     line = TrimmedContactLine(parts.liquid.surface_tension, solid, toward)
     surface = start.moved(scale.to_world(start.points))
-    return Foot(surface, sector, mesh, [rest.line, line], [rest.support])
+    free = {"full": "xy", "half": "x"}.get(sector.model, "")
+    alone = [rest.line, *(Centroid(axis) for axis in free)]
+    return Foot(
+        surface, sector, mesh, [rest.line, line], [rest.support], grading=None, predictor=alone
+    )
 
 
 def _on_an_area(parts: Question) -> Foot:

@@ -93,7 +93,7 @@ class Scene:
     supports : how edges and symmetry restrict the motion.
     scale : units and frame of the computation; by default the surface's size and the tension.
         Sliding edges lie in z = 0 of its frame.
-    grading : spread of the control points along the meridians.
+    grading : spread of the control points along the meridians, None to leave them alone.
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
     motion : "spines", one unknown per control point, or "cartesian", three, which needs a
@@ -105,7 +105,7 @@ class Scene:
     substrate : the solid that the membrane touches, for its kind and pictures.
     particles : spheres on which it pulls too.
     hold : axes along which the user asked for the centroid to be held.
-    particle_pull : acceleration along -z that weighs a particle and the liquid on it.
+    acceleration : world vector that weighs particles and the liquid on them.
     liquid_density : of that liquid.
     kind : name of the family, which decides the measures of a solution.
     description : the scene in words of the scene file, for the result.
@@ -116,7 +116,7 @@ class Scene:
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
     scale: Scale | None = None
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
     motion: str = "spines"
     ramp: Ramp | None = field(default=None, repr=False)
@@ -125,7 +125,7 @@ class Scene:
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
     particles: Sequence[Sphere] = ()
     hold: str = ""
-    particle_pull: float = 0.0
+    acceleration: tuple[float, float, float] = (0.0, 0.0, 0.0)
     liquid_density: float = 0.0
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)

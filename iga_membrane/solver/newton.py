@@ -15,6 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import GeometryError
 from ..splines import Grading
+from ..surface.motion import Motion
 from ..surface.reparametrize import distortion, regridded
 from ..surface.surface import Surface
 from .assembly import Assembly, System
@@ -40,9 +41,6 @@ begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
 step, and before; less while it rolls to and fro."""
-STILL = 0.02
-"""Step after which the spines of a membrane that passes through solids stay as they are: what lies
-inside follows them, and they it."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -157,14 +155,16 @@ def _iterate(
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
     steady, reach = False, ROLL
-    motion, size = None, np.inf
+    # where a membrane passes through solids its spines stay those of the start: what lies inside
+    # follows them, so they must not follow it
+    motion: Motion | None = None
     way: Array = np.zeros(3)
     roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
-        if motion is None or assembly.trim is None or size > STILL:
+        if motion is None or assembly.trim is None:
             motion = assembly.spines.on(result.surface)
         result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)

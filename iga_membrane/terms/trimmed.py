@@ -45,8 +45,8 @@ class TrimmedContactLine(Term):
     gamma : surface tension.
     solid : sphere, lattice or list of spheres, with its contact angles; a plane under them is left
         out, no line is computed on it.
-    toward : (n, 3) unit vectors from the spheres of a list towards the liquid, away from which they
-        are dry; upwards if None.
+    toward : (k, 3) unit vectors towards the liquid from the last spheres of a list, the particles;
+        away from the liquid they are dry. From all others it points upwards.
     """
 
     gamma: float
@@ -65,9 +65,17 @@ class TrimmedContactLine(Term):
 
     def axis(self, which: Index) -> Array:
         """(..., 3) towards the liquid from spheres by their numbers."""
+        axes = np.broadcast_to([0.0, 0.0, 1.0], (*np.shape(which), 3))
         if self.toward is None:
-            return np.broadcast_to([0.0, 0.0, 1.0], (*np.shape(which), 3))
-        return np.asarray(self.toward[which])
+            return axes
+        own = self.particle(which)
+        return np.where(own[..., None] >= 0, self.toward[own], axes)
+
+    def particle(self, which: Index) -> Index:
+        """(...) number among the particles of spheres by their numbers, -1 for others."""
+        if self.toward is None or not isinstance(self.solid, Spheres):
+            return np.full(np.shape(which), -1)
+        return np.maximum(np.asarray(which) - len(self.solid.centers) + len(self.toward), -1)
 
     def cosine(self, which: Index) -> Array:
         """(...) cosine of the contact angle on spheres by their numbers."""
