@@ -1,10 +1,4 @@
-"""Droplets with particles: all solids that the membrane meets, and a patch round a particle.
-
-A droplet on a plane is a disc. The map ``zeta = (w - b) / (1 - b* w)`` of the unit disc, ``w`` the
-conformal place on the droplet (1 on its contact line) and ``b`` that of a particle, keeps the line
-a circle and makes the particle's another: rings of ``zeta`` fit both, and elements shrink towards
-the particle by themselves.
-"""
+"""Particles of a droplet: where they may be, all solids that its membrane meets, mirror planes."""
 
 from __future__ import annotations
 
@@ -16,22 +10,13 @@ from ..arrays import Array
 from ..checks import record
 from ..errors import SceneError
 from ..solids import Sphere, SphereLattice, Spheres
-from ..splines import ring_angles
-from ..surface.closed import Meridian
-from ..surface.reparametrize import interpolated
-from ..surface.ring import drop_space, meridian_interpolation
 from ..surface.surface import Surface
-from .liquid import MODELS, Mesh, Model
-from .start import Pancake
+from .liquid import MODELS, Model
 
 REACH = 2.0
 """Distance from the axis, over the droplet's length, within which asperities of a lattice count."""
 FAR = 0.3
 """Gap between a particle and the start, over the droplet's length, that no meniscus spans."""
-ROUND, ALONG = 48, 18
-"""Elements round a particle, and from the droplet's line to the particle at least."""
-ACROSS = 3.0
-"""Elements at least across the radius of a particle that does not hold the patch's pole."""
 
 
 def check_particles(particles: Sequence[Sphere]) -> tuple[Sphere, ...]:
@@ -128,65 +113,3 @@ def mirrored_model(particles: Sequence[Sphere], smallest: Model) -> Model:
     while kept < 3 and same(images[kept]):
         kept += 1
     return MODELS[min(kept, MODELS.index(smallest))]
-
-
-def patch_round(pancake: Pancake, particles: Sequence[Sphere], mesh: Mesh, sectors: int) -> Surface:
-    """A droplet on the plane z = 0, the pole of its patch in the smallest of the particles.
-
-    Parameters
-    ----------
-    pancake, particles : in the droplet's scale.
-    mesh : its ``elements`` lie between the droplet's line and the pole; -1 chooses.
-    """
-    meridian = _meridian(pancake)
-    places = [_place(meridian, each) for each in particles]
-    least = int(np.argmin([each.radius for each in particles]))
-    pole = places[least]
-
-    def at(zeta: Array) -> Array:
-        w = (zeta + pole) / (1.0 + np.conj(pole) * zeta)
-        size = np.maximum(np.abs(w), 1e-12)
-        r, z, _ = meridian(np.exp(meridian.log[0]) / size)
-        turn = w / size
-        return np.stack([r * turn.real, r * turn.imag, z], axis=-1)
-
-    def scale_at(zeta: complex) -> float:
-        beside = 0.999 * zeta + 1e-4  # nearer to the middle of the disc
-        one, other = at(np.array([zeta, beside]))
-        return float(np.linalg.norm(one - other)) / abs(zeta - beside)
-
-    spot = min(0.5, particles[least].radius / scale_at(0.0))
-    span = float(np.arcsinh(1.0 / spot))
-    along, around = mesh.elements, ROUND
-    if along < 0:
-        along = max(ALONG, int(np.ceil(ROUND * span / (2.0 * np.pi))))
-        for each, place in zip(particles, places, strict=True):
-            zeta = (place - pole) / (1.0 - np.conj(pole) * place)
-            size = max(abs(zeta), spot) * scale_at(zeta) * span
-            along = max(along, int(np.ceil(ACROSS * size / each.radius)) if abs(zeta) else 0)
-    around = int(np.ceil(along * 2.0 * np.pi / span / sectors)) * sectors
-    space = drop_space("bspline", mesh.degree, along, sectors, around=around)
-    points, matrix = meridian_interpolation(space)
-    turn = np.exp(1j * ring_angles(space))[:, None]
-    values = at(spot * np.sinh(span * (1.0 - points)) * turn)
-    values[:, 0, 2] = 0.0
-    # in its place the derivative at the pole, against which the ring shrinks
-    step = 1e-3 * spot
-    values[:, -2] = (at(np.zeros(1)) - at(step * turn[:, 0])) * (spot * span / step)
-    return interpolated(space, values, matrix)
-
-
-def _meridian(pancake: Pancake) -> Meridian:
-    """From the pancake's contact line to a small circle at its top."""
-    r, z = pancake(np.linspace(0.0, 1.0, 4001)[:-1])
-    slope = np.gradient(np.stack([r, z], axis=1), axis=0)
-    normal = np.stack([slope[:, 1], -slope[:, 0]], axis=1)
-    return Meridian(r, z, normal / np.linalg.norm(normal, axis=1, keepdims=True))
-
-
-def _place(meridian: Meridian, particle: Sphere) -> complex:
-    """Conformal place of the point of a droplet that is nearest to a particle, 0 at the top."""
-    x, y, z = particle.center
-    nearest = int(np.hypot(meridian.r - np.hypot(x, y), meridian.z - z).argmin())
-    size = float(meridian.log[0] - meridian.log[nearest])
-    return complex(np.exp(size + 1j * np.arctan2(y, x)))

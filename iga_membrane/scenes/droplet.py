@@ -21,6 +21,7 @@ from ..terms import (
     Scale,
     SurfaceTension,
     Term,
+    TrimmedContactLine,
     Volume,
 )
 from .beside import check_particles
@@ -165,9 +166,14 @@ def sessile_droplet(
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
-    if built.predictor and isinstance(substrate, Plane):
-        held = [t for t in terms if not isinstance(t, Centroid)]
-        return replace(scene, predictor=replace(scene, terms=[*held, *built.predictor], ramp=None))
+    if grains and isinstance(substrate, Plane):
+        alone = sessile_droplet(
+            substrate,
+            volume=volume,
+            liquid=liquid,
+            gravity=[float(g) for g in acceleration],
+        )
+        return _with_particles(replace(scene, start_from=built.start_from), alone)
     if built.predictor:
         return _with_start(scene, terms, built)
     if not built.tangent:
@@ -209,6 +215,37 @@ def _with_start(scene: Scene, terms: Sequence[Term], built: Foot) -> Scene:
     # another angle may have a better start; its wet set may be another one, too
     ramp = Ramp("substrate.contact_angle", (least + AROUND, least), started)
     return replace(started(least), ramp=ramp)
+
+
+def _with_particles(scene: Scene, alone: Scene) -> Scene:
+    """A droplet whose membrane passes through particles: it starts from the droplet alone, and if
+    that fails from particles at easier angles."""
+    angles = np.array([each.contact_angle for each in scene.particles])
+    easy = np.clip(angles, *EASY)
+    lead = int(np.abs(angles - easy).argmax())
+
+    def at(angle: float) -> Scene:
+        """All angles on the way from the easy ones, as far as that of one particle."""
+        way = angles[lead] - easy[lead]
+        turned = easy + (angle - easy[lead]) / way * (angles - easy) if way else angles
+
+        def through(term: Term) -> Term:
+            if not isinstance(term, TrimmedContactLine):
+                return term
+            assert isinstance(term.solid, Spheres)
+            every = np.array(term.solid.contact_angle)
+            every[len(every) - len(turned) :] = turned
+            return replace(term, solid=replace(term.solid, contact_angle=every))
+
+        return replace(scene, terms=[through(t) for t in scene.terms], ramp=None, predictor=alone)
+
+    values = float(easy[lead]), float(angles[lead])
+    ramp = Ramp(f"particle[{lead}].contact_angle", values, at)
+    return replace(at(values[1]), ramp=ramp if values[0] != values[1] else None)
+
+
+EASY = 60.0, 130.0
+"""Contact angles of particles, in degrees, between which their menisci are good starts."""
 
 
 AROUND = 12.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,7 +16,6 @@ from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
-    Centroid,
     Contact,
     LineTerm,
     PlaneContactLine,
@@ -27,8 +26,9 @@ from ..terms import (
 )
 from ..terms.term import AnySolid
 from .asperities import ball, estimated_foot, smallest_model, whole_skin
-from .beside import crowd, mirrored_model, patch_round, towards_liquid
+from .beside import crowd, mirrored_model, towards_liquid
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .round_patch import of_droplet, of_pancake, round_patch
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
 
 
@@ -54,17 +54,24 @@ class Question:
 
 @dataclass(frozen=True, eq=False)
 class Foot:
-    """Start, support and price of a foot; ``predictor`` : other terms that give a better start."""
+    """Start, support and price of a foot.
+
+    Attributes
+    ----------
+    predictor : other terms that give a better start.
+    start_from : a start from the equilibrium of the same droplet without particles.
+    """
 
     surface: Surface
     sector: Sector
     mesh: Mesh
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
-    grading: Grading | None = field(default_factory=Grading)
+    grading: Grading = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
     predictor: Sequence[Term] = ()
+    start_from: Callable[[Surface], Surface] | None = None
 
 
 CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
@@ -73,7 +80,7 @@ CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
-    if parts.particles and isinstance(solid, Plane) and solid.contact_angle < 180.0:
+    if parts.particles:
         return _with_particles(parts)
     refused: tuple[str, ...] = ("trimmed", "adhesion")
     if isinstance(solid, (SphereLattice, Spheres)):
@@ -119,13 +126,28 @@ def _on_a_line(parts: Question) -> Foot:
 def _with_particles(parts: Question) -> Foot:
     """A drop on a plane whose membrane passes through particles."""
     scale, mesh = parts.scale, parts.asked.mesh(degree=3, elements=-1)
-    assert isinstance(parts.substrate, Plane)
+    if not isinstance(parts.substrate, Plane) or parts.substrate.contact_angle == 180.0:
+        raise SceneError(
+            "particle: not available yet on a droplet on spheres, or at 180 degrees on a plane"
+        )
+    if parts.contact_line not in ("auto", "trimmed"):
+        raise SceneError(
+            f'solver.contact_line = "{parts.contact_line}": not available yet with particles, '
+            'whose lines are "trimmed"; leave it out'
+        )
     if parts.law.penalty is not None or parts.start is not None or mesh.space != "bspline":
         raise SceneError(
             "particle: a droplet with particles needs the scene's own start, no penalty and space "
             '"bspline"'
         )
     local = tuple(scale.local_sphere(each) for each in parts.particles)
+    for i, (each, given) in enumerate(zip(local, parts.particles, strict=True)):
+        if each.center[2] < each.radius * (1.0 - 1e-9):
+            raise SceneError(
+                f"particle[{i}].center = {list(given.center)}: "
+                f"{each.center[2] * scale.length:g} above the plane, less than its radius "
+                f"{given.radius:g}: it reaches into the substrate"
+            )
     model = mirrored_model(local, _sector(mesh, parts.bond).model)
     if mesh.model is not None and MODELS.index(mesh.model) > MODELS.index(model):
         raise SceneError(
@@ -134,17 +156,22 @@ def _with_particles(parts: Question) -> Foot:
         )
     sector = Sector(mesh.model or model)
     rest = _foot(parts.substrate, parts.liquid, scale.length, parts.down)
-    start = patch_round(rest.pancake, local, mesh, 2 * sector.copies)
+    patch = round_patch(of_pancake(rest.pancake), local, mesh, 2 * sector.copies)
+    start = patch.surface(of_pancake(rest.pancake))
     mesh = replace(mesh, elements=start.space.bases[1].elements)
     solid = crowd(None, parts.particles, scale.length)
     toward = towards_liquid(start, local, 1.0) @ scale.axes.T
     line = TrimmedContactLine(parts.liquid.surface_tension, solid, toward)
     surface = start.moved(scale.to_world(start.points))
-    free = {"full": "xy", "half": "x"}.get(sector.model, "")
-    alone = [rest.line, *(Centroid(axis) for axis in free)]
-    return Foot(
-        surface, sector, mesh, [rest.line, line], [rest.support], grading=None, predictor=alone
-    )
+
+    # far from the line its conormals may point against the membrane's normals
+    support = [Sliding("xi2=0", fade=4)]
+
+    def from_alone(alone: Surface) -> Surface:
+        """Start, in the scene's scale, from the droplet without particles."""
+        return patch.surface(of_droplet(alone))
+
+    return Foot(surface, sector, mesh, [rest.line, line], support, start_from=from_alone)
 
 
 def _on_an_area(parts: Question) -> Foot:

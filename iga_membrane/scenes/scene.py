@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -93,14 +93,16 @@ class Scene:
     supports : how edges and symmetry restrict the motion.
     scale : units and frame of the computation; by default the surface's size and the tension.
         Sliding edges lie in z = 0 of its frame.
-    grading : spread of the control points along the meridians, None to leave them alone.
+    grading : spread of the control points along the meridians.
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
     motion : "spines", one unknown per control point, or "cartesian", three, which needs a
         Stabilization.
     ramp : the way to this scene if a direct solve fails.
-    predictor : a scene of the same space whose equilibrium is near this one's; contact lines start
-        from it.
+    predictor : a scene whose equilibrium is near this one's; contact lines inside the membrane
+        start from it.
+    start_from : that equilibrium's surface to one of this scene's space, both in their scales, if
+        the spaces differ.
     free_edge : the way to find a fixed edge's place at 180 degrees.
     substrate : the solid that the membrane touches, for its kind and pictures.
     particles : spheres on which it pulls too.
@@ -116,11 +118,12 @@ class Scene:
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
     scale: Scale | None = None
-    grading: Grading | None = field(default_factory=Grading)
+    grading: Grading = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
     motion: str = "spines"
     ramp: Ramp | None = field(default=None, repr=False)
     predictor: Scene | None = field(default=None, repr=False)
+    start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
     particles: Sequence[Sphere] = ()
@@ -247,7 +250,7 @@ class Scene:
     def local_supports(self) -> tuple[Support, ...]:
         """The supports in the scene's scale and frame."""
         return tuple(
-            Sliding(s.edge, self.units.local_sphere(s.solid))
+            replace(s, solid=self.units.local_sphere(s.solid))
             if isinstance(s, Sliding) and s.solid is not None
             else s
             for s in self.supports

@@ -49,9 +49,7 @@ def sheet_through(
     factor = np.where(reach < rim, np.interp(reach, radii, drawn) / np.maximum(reach, 1e-300), 1.0)
     place = centre + away * factor[:, None]
     radius = np.linalg.norm(place - centre, axis=1)
-    inside = r * profile.depth - 0.5 * profile.slope / line * (line**2 - radius**2)
-    outside = r * profile.height(np.clip(radius, line, rim) / r)
-    z = np.where(radius < line, inside, outside)
+    z = r * profile.through(radius / r)
     z[_on_rim(flat, half, boundary)] = 0.0
     surface = Surface(space, np.column_stack([place, z]))
     return surface, np.tile([0.0, 0.0, 1.0], (space.count, 1))

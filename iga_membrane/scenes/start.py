@@ -151,6 +151,28 @@ class Funnel:
         """Of the sheet at the sphere, outwards."""
         return self.log / self.edge + 2.0 * self.quarter * self.edge
 
+    def through(self, radius: Array) -> Array:
+        """The same, and on inside the sphere to the axis, level there and beyond the rim."""
+        inside = self.depth - 0.5 * self.slope / self.edge * (self.edge**2 - radius**2)
+        outside = self.height(np.clip(radius, self.edge, self.rim))
+        return np.where(radius < self.edge, inside, outside)
+
+
+def meniscus(particle: Sphere, above: float, length: float) -> Funnel:
+    """The membrane near a particle on a droplet, as a sheet of small slopes.
+
+    Parameters
+    ----------
+    above : distance of the droplet's surface from the particle's centre, outwards.
+    length : of the droplet, where the meniscus ends.
+    """
+    place = Sphere(particle.contact_angle, particle.radius, (0.0, 0.0, above))
+    return funnel(place, max(MENISCUS * length, 2.0 * particle.radius), 0.0)
+
+
+MENISCUS = 0.8
+"""Reach of a meniscus over the length of the droplet."""
+
 
 def funnel(particle: Sphere, half: float, curvature: float) -> Funnel:
     """The funnel that meets a sphere at its contact angle.

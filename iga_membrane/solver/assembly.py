@@ -66,12 +66,24 @@ class Assembly(Functional):
         """Whether all forces have an energy, so that descent can be asked for."""
         return self.stabilizer is None or not self.stabilizer.projected
 
+    def largest(self, surface: Surface, displacement: Array) -> float:
+        """Size of a displacement: of the control points', but of the membrane's own where it passes
+        through solids, since some of its control points move it hardly at all."""
+        if self.trim is None:
+            moved = displacement
+        else:
+            rows = self.table.part(np.flatnonzero(self.trim.counts(surface.points)))
+            moved = rows.values @ displacement[rows.functions]
+        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0))
+
     def near_contact(self, surface: Surface, displacement: Array) -> float:
         """Largest displacement over the contact length, of control points near the solid."""
         if self.contact is not None:
             near, length = self.contact.near(surface.points), self.contact.length
         elif self.trim is not None:
-            near, length = self.trim.near(surface.points), self.trim.length
+            rows = self.table.part(np.flatnonzero(self.trim.near(surface.points)))
+            moved = np.linalg.norm(rows.values @ displacement[rows.functions], axis=-1)
+            return float(moved.max(initial=0.0)) / self.trim.length
         else:
             return 0.0
         moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)

@@ -143,7 +143,7 @@ def _audited(
     body, load = assembly.density(multipliers), assembly.line_load(multipliers)
     with np.errstate(all="ignore"):
         try:
-            motion = assembly.spines.on(surface)
+            motion = assembly.motion(surface)
             if assembly.trim is not None:
                 return trimmed_audit(scene, surface, motion, body, assembly.trim)
             return audit(scene, surface, motion, body, load, assembly.points, assembly.contact)

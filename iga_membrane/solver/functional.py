@@ -12,7 +12,7 @@ from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..splines import Table
 from ..surface.cartesian import Cartesian
-from ..surface.motion import Spines
+from ..surface.motion import Motion, Spines
 from ..surface.sector import sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
@@ -82,8 +82,18 @@ class Functional:
         self.contact = contact_of(scene, surface, self.points)
         self.trim = trim_of(scene, surface, self.table, self.spines.unknowns, self.size)
         self.stabilizer: Stabilizer | None = None
+        self._kept: Motion | None = None
         self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
         self.load(scene)
+
+    def motion(self, surface: Surface) -> Motion:
+        """The spines on a surface, or those that are kept."""
+        return self._kept or self.spines.on(surface)
+
+    def keep_motion(self, surface: Surface) -> None:
+        """From now on move along the spines of a surface: what lies inside solids follows them, so
+        they must not follow it."""
+        self._kept = self.spines.on(surface)
 
     def load(self, scene: Scene) -> None:
         """Take the terms of another scene of the same space, whose supports move the same edges.

@@ -314,7 +314,7 @@ def _beyond_fold(
     descent is started that way at growing distances.
     """
     plain = replace(options, near=np.inf)
-    motion = assembly.spines.on(state.surface)
+    motion = assembly.motion(state.surface)
     along = motion.displacement(verdict.mode)
     along /= np.linalg.norm(along, axis=1).max()
     for distance in np.geomspace(0.01, 0.3, 6):

@@ -15,7 +15,6 @@ import numpy as np
 from ..arrays import Array
 from ..errors import GeometryError
 from ..splines import Grading
-from ..surface.motion import Motion
 from ..surface.reparametrize import distortion, regridded
 from ..surface.surface import Surface
 from .assembly import Assembly, System
@@ -127,6 +126,7 @@ def newton(
         assembly.contact.begin()
     if assembly.trim is not None:
         assembly.trim.begin()
+        assembly.trim.hold(surface.points)
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
         if multipliers is None and count:
@@ -155,17 +155,13 @@ def _iterate(
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
     steady, reach = False, ROLL
-    # where a membrane passes through solids its spines stay those of the start: what lies inside
-    # follows them, so they must not follow it
-    motion: Motion | None = None
     way: Array = np.zeros(3)
     roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
-        if motion is None or assembly.trim is None:
-            motion = assembly.spines.on(result.surface)
+        motion = assembly.motion(result.surface)
         result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
@@ -183,7 +179,7 @@ def _iterate(
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
         displacement = assembly.displacement(motion, direction.step)
-        size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
+        size = assembly.largest(result.surface, displacement)
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")
         near = assembly.near_contact(result.surface, displacement)
@@ -235,7 +231,7 @@ def _iterate(
 
 def _best_balance(assembly: Assembly, surface: Surface) -> Array:
     """Multipliers that leave the least of the forces of a state."""
-    gradient, columns = assembly.forces(surface, assembly.spines.on(surface).directions)
+    gradient, columns = assembly.forces(surface, assembly.motion(surface).directions)
     return np.asarray(np.linalg.lstsq(columns, gradient)[0], float)
 
 

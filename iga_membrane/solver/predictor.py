@@ -7,6 +7,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
+from ..scenes.start import meniscus
+from ..solids import Sphere
 from ..surface.sector import mirrors
 from ..surface.surface import Surface
 from .assembly import Assembly
@@ -18,6 +20,11 @@ SHALLOW = 0.6
 """Part of its depth under a flat membrane below which a spot is pressed to that depth."""
 WIDE = 1.5
 """Reach of that press over the sphere's radius."""
+NEARBY = 1.0
+"""Distance from a particle's centre along its axis, over the droplet's length, within which the
+membrane is its own."""
+PLANE = 0.05
+"""Height above a plane, over the droplet's length, at which half of a meniscus is left."""
 DIMPLE = 0.3
 """Depth over radius of a dimple in the middle of every spot: inside its solid the start must lie
 clear of the solid's surface, which a membrane on a penalty follows."""
@@ -42,8 +49,12 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
     start, multipliers, before = scene.local_surface(), None, None
     if scene.predictor is not None:
         near = scene.predictor
-        before = newton(Assembly(near), near.local_surface(), None, None, options)
-        start = pressed(scene, assembly, before.surface)
+        before = newton(Assembly(near), near.local_surface(), None, near.meridian_grading, options)
+        near_start = before.surface
+        if scene.start_from is not None:
+            near_start = scene.start_from(before.surface)
+        start = pressed(scene, assembly, near_start)
+        assembly.keep_motion(near_start)
         if len(before.multipliers) == assembly.multipliers:
             multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)
@@ -57,7 +68,8 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     """A start for contact lines at Young's angle on every sphere that a membrane has sunk into.
 
     A flat membrane at depth ``r (1 + cos(theta))`` meets a sphere at the angle theta. Spots that
-    are much shallower are pressed to that depth: a small one is far from any equilibrium.
+    are much shallower are pressed to that depth: a small one is far from any equilibrium. At a
+    particle, which may stand anywhere, the membrane gets the meniscus of small slopes.
 
     Parameters
     ----------
@@ -85,7 +97,24 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     for k, center in enumerate(centers):
         fall += _bump(surface.points, center, WIDE * radii[k], press[k])
         fall += _bump(surface.points, center, spot[k], DIMPLE * spot[k])
-    return surface.moved(surface.points - np.outer(fall, [0.0, 0.0, 1.0]))
+    points = surface.points - np.outer(fall, [0.0, 0.0, 1.0])
+    first_particle = trim.term.count - len(scene.particles)
+    for k in range(len(scene.particles)):
+        each = np.array(first_particle + k)
+        center, toward = solid.center_of(each), trim.term.axis(each)
+        along = (x - center) @ toward
+        beside = np.linalg.norm(x - center - along[:, None] * toward, axis=1)
+        # the drop's other side is crossed by the axis too
+        pierced = int(np.where(np.abs(along) < NEARBY, beside, np.inf).argmin())
+        angle = float(np.degrees(np.arccos(trim.term.cosine(each))))
+        particle = Sphere(angle, float(solid.radius_of(each)))
+        bent = meniscus(particle, -float(along[pierced]), 1.0)
+        distance = np.linalg.norm(surface.points - x[pierced], axis=1) / particle.radius
+        fading = np.maximum(1.0 - (distance / bent.rim) ** 4, 0.0) ** 2
+        if assembly.above_plane:
+            fading *= surface.points[:, 2] / (surface.points[:, 2] + PLANE)
+        points += np.outer(particle.radius * bent.through(distance) * fading, toward)
+    return surface.moved(points)
 
 
 def _bump(points: Array, center: Array, reach: float, height: float) -> Array:

@@ -49,7 +49,7 @@ def stability_of(assembly: Assembly, surface: Surface, multipliers: Array) -> St
     SingularMatrix
         If the Hessian cannot be factorized.
     """
-    directions = assembly.spines.on(surface).directions
+    directions = assembly.motion(surface).directions
     system = assembly.system(surface, directions, multipliers)
     border = system.constraint_gradients
     factor = Bordered(system.matrix, border)

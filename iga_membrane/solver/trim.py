@@ -21,6 +21,8 @@ from .ties import Ties
 CORE = 0.65, 0.85
 """Least and largest part of a spot's radius inside which the membrane counts as deeper than it
 lies."""
+LOOSE = 0.3
+"""The least part of a spot on a particle."""
 ON_LINE = 1e-7
 """Gap over the contact length that points of a contact line may have."""
 EXTRA = 4
@@ -88,7 +90,7 @@ class Trim:
     def begin(self) -> None:
         """Free to choose again what is tied; spots are where they were."""
         least = float(np.min(self.term.solid.contact_angle))
-        self.ties.begin(np.pi - np.radians(least), self._element)
+        self.ties.begin(np.pi - np.radians(least), self._element, self.term.toward is not None)
         self._known.clear()
 
     @property
@@ -230,7 +232,9 @@ class Trim:
         np.minimum.at(radii, place, np.linalg.norm(away, axis=1))
         psi = np.pi - np.arccos(self.term.cosine(numbers))
         again = 0.5 * psi * solid.radius_of(numbers)
-        self._cores = numbers, middles, np.clip(radii - again, CORE[0] * radii, CORE[1] * radii)
+        # on a particle, which may stand anywhere, a line has farther to go than on an asperity
+        least = np.where(self.term.particle(numbers) >= 0, LOOSE, CORE[0])
+        self._cores = numbers, middles, np.clip(radii - again, least * radii, CORE[1] * radii)
         self._known.clear()
 
     def _connected(self, active: Mask) -> Mask:

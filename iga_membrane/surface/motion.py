@@ -138,8 +138,9 @@ class Spines:
     def on(self, surface: Surface) -> Motion:
         """Directions re-based on a surface: its normals, blended into a sliding edge's plane.
 
-        The blend ``d = (1 - w) m + w n`` with ``w`` the parametric distance from the edge is one
-        smooth field over the patch; a jump in it would cost orders of magnitude.
+        The blend ``d = (1 - w) m + w n``, with ``1 - w`` a power of the parametric distance from
+        the other end, is one smooth field over the patch; a jump in it would cost orders of
+        magnitude.
         """
         if self._given is not None:
             rows = np.concatenate([self._given, np.zeros((1, 3)), self.shifts])
@@ -150,7 +151,7 @@ class Spines:
             along, end = EDGES[support.edge]
             basis = space.bases[1 - along]
             parameter = (basis.abscissae - basis.breaks[0]) / (basis.breaks[-1] - basis.breaks[0])
-            w = np.abs(parameter - end)
+            w = 1.0 - (1.0 - np.abs(parameter - end)) ** support.fade
             rim = _conormals(surface, support)
             if along == 0:
                 normals = (1 - w)[None, :, None] * rim[:, None] + w[None, :, None] * normals

@@ -33,10 +33,12 @@ class Sliding:
     ----------
     edge : as for :class:`Fixed`.
     solid : what it slides on; None is the plane z = 0.
+    fade : power with which the directions of the edge fade towards the other end of the patch.
     """
 
     edge: str = "xi2=0"
     solid: Sphere | None = None
+    fade: int = 1
 
     def __post_init__(self) -> None:
         choice("edge", self.edge, EDGES)

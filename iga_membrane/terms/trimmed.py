@@ -71,6 +71,11 @@ class TrimmedContactLine(Term):
         own = self.particle(which)
         return np.where(own[..., None] >= 0, self.toward[own], axes)
 
+    @property
+    def count(self) -> int:
+        """Number of the spheres of a list, 0 of other solids."""
+        return len(self.solid.centers) if isinstance(self.solid, Spheres) else 0
+
     def particle(self, which: Index) -> Index:
         """(...) number among the particles of spheres by their numbers, -1 for others."""
         if self.toward is None or not isinstance(self.solid, Spheres):

@@ -140,7 +140,17 @@ def test_misspelt_keys_are_refused(path, said):
         ("substrate.kind", "sphere", "substrate.radius: missing"),
         ("scene", "asperity_cell", "gravity: does not belong"),
         ("scene", "liquid_sheet", "substrate: does not belong"),
-        ("particle", [{"radius": 1.0}], "[[particle]]: not available yet"),
+        ("particle", [{"radius": 1.0}], "particle[0].center: missing"),
+        (
+            "particle",
+            [{"radius": 0.2, "center": [0, 0, 1.5], "contact_angle": 90, "motion": "vertical"}],
+            'particle[0].motion = "vertical": not available yet',
+        ),
+        (
+            "particle",
+            [{"radius": 0.2, "center": [0, 0, 0.1], "contact_angle": 90}],
+            "reaches into the substrate",
+        ),
         ("solver.contact", "penalty", "not available yet"),
         ("solver.contact_line", "adhesion", "not available here"),
         ("solver.start", "flat", "only at 180 degrees"),
