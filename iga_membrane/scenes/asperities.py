@@ -11,12 +11,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Solid
+from ..solids import Solid, SphereLattice, Spheres
 from ..splines import Space, pillow_space
-from ..splines.quadrature import gauss
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from .liquid import Model
-from .start import Pancake, least_energy_pancake
+from .start import FlatDrop, flat_drop, rounded
 
 STARTS = ("flat", "above", "touching")
 PER_RADIUS = 3.35
@@ -35,6 +34,59 @@ FINE = 0.75
 """Part of the elements from the middle of the square to a side that lies under the foot."""
 
 
+MANY = 100
+"""Asperities under the foot from which they are many: the start is then the drop on their tops,
+pressed on them, and contact is a hard penalty at all quadrature points."""
+PER_SPOT = 2.2
+"""Elements along the radius of the smallest of many asperities, by default."""
+SUNK = 3e-4
+"""Depth over radius to which that penalty lets the membrane sink."""
+GROWTH = 0.15
+"""Largest growth from one element to the next beside the evenly meshed foot of many asperities."""
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """What carries a droplet (dimensionless).
+
+    Attributes
+    ----------
+    length : over which the contact changes: radius of the smallest asperity.
+    cell : area of the substrate per asperity; infinite without asperities.
+    lies : whether the membrane lies on the asperities; where it passes through them, below 180
+        degrees, more of them are wet.
+    stiffness : traction over depth of a penalty that was asked for, else 0: the mesh is then as
+        fine as the depth asks for.
+    """
+
+    length: float
+    cell: float = np.inf
+    lies: bool = True
+    stiffness: float = 0.0
+
+    def many(self, foot: float) -> bool:
+        """Whether many asperities lie under a foot of a radius."""
+        return self.lies and np.pi * foot**2 > MANY * self.cell
+
+    def sag(self, pressure: float) -> float:
+        """Mean depth under the tops of a membrane of tension 1 that lies on a wide square lattice:
+        the potential of a lattice of point forces ``pressure * cell``, cut off at spots of radius
+        a, ``a^2 = pressure cell length / 2 pi``."""
+        spot = np.sqrt(pressure * self.cell * self.length / (2.0 * np.pi))
+        log = np.log(np.sqrt(self.cell) / spot) - ROBIN
+        return float(pressure * self.cell * (2.0 * log + 1.0) / (4.0 * np.pi))
+
+    def penalty(self, pressure: float) -> float:
+        """Traction over depth with which the smallest asperity lets the membrane sink by
+        ``SUNK``."""
+        return (pressure + 2.0 / self.length) / (SUNK * self.length)
+
+
+ROBIN = 1.3105329259
+"""``log(2 pi |eta(i)|^2)``, eta being Dedekind's: constant of the potential of a unit square
+lattice."""
+
+
 @dataclass(frozen=True, eq=False)
 class Skin:
     """Closed start of a droplet (dimensionless).
@@ -43,61 +95,45 @@ class Skin:
     ----------
     space, points, directions : of the membrane.
     pressure : estimated at its foot.
+    many : whether many asperities carry it.
     """
 
     space: Space
     points: Array
     directions: Array
     pressure: float
+    many: bool
 
 
 def whole_skin(
     bond: float,
     volume: float,
-    length: float,
+    pattern: Pattern,
     degree: int,
     elements: int,
-    lies: bool = True,
     start: object = None,
-    stiffness: float = 0.0,
 ) -> Skin:
     """Flat-footed droplet of least energy, its foot meshed evenly.
 
     Parameters
     ----------
     bond : density times vertical gravity.
-    length : over which the contact changes: radius of the smallest asperity.
-    elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along
-        ``length``.
-    lies : whether the membrane lies on the asperities; where it passes through them, below 180
-        degrees, more of them are wet.
+    elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along the
+        pattern's length.
     start : "above" or "touching" for a sphere; anything else for the flat-footed droplet.
-    stiffness : traction over depth of a penalty, 0 without: the mesh is then as fine as the depth
-        asks for.
     """
-    pancake = least_energy_pancake(180.0, bond, volume, steepest=180.0)
-    pressure = estimated_pressure(pancake, bond, volume)
-    foot = estimated_foot(pancake, bond, volume)
-    foot *= 1.0 if lies else SPREAD
-    widest = pancake.flat + pancake.radius
-    wide = min(1.1 * foot + 2.0 * length, 0.95 * widest)
-    meridian = _meridian(pancake, wide)
+    length = pattern.length
+    drop = rounded(bond, volume)
+    many = pattern.many(drop.foot)
+    if many:
+        drop = flat_drop(bond, volume)
+    wide = _foot(drop, pattern, many)
+    meridian = _meridian(drop, wide)
     reach = inverse_lemniscate_sine(meridian.size_at(wide))
-    stretch = Stretch(FINE, reach / FINE) if reach < FINE else Stretch()
     if not elements:
-        # physical length of the even elements, times their number
-        across = wide / reach * stretch.slope
-        needed = PER_RADIUS * across / length
-        if stiffness:
-            sunk = (pressure + 2.0 / length) / stiffness / length
-            needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
-        if needed > MOST:
-            raise SceneError(
-                f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "
-                f"elements from the middle to a side, more than {MOST}: not available yet; give "
-                "larger asperities, or discretization.elements"
-            )
-        elements = max(FEWEST, int(np.ceil(needed)))
+        elements = _elements(drop, pattern, wide, reach, many)
+    fine = _fine_part(reach, elements) if many else FINE
+    stretch = Stretch(fine, reach / fine) if reach < fine else Stretch()
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
@@ -105,41 +141,80 @@ def whole_skin(
             space, ball((3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)), stretch
         )
         points[:, 2] += length if start == "above" else 0.0
-    return Skin(space, points, directions, pressure)
+    elif many:
+        points[:, 2] -= 0.5 * pattern.sag(drop.pressure)
+    return Skin(space, points, directions, drop.pressure, many)
 
 
-def estimated_foot(pancake: Pancake, bond: float, volume: float) -> float:
-    """Contact radius on a plane at 180 degrees: weight over pressure."""
-    pressure = estimated_pressure(pancake, bond, volume)
-    return float(np.sqrt(bond * volume / (np.pi * pressure)))
+def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
+    """How far out asperities may be wet."""
+    widest = 0.95 * float(drop.r.max())
+    wide = 1.1 * drop.foot * (1.0 if pattern.lies else SPREAD) + 2.0 * pattern.length
+    if many:
+        # the sag brings the rim, of curvature p, as much lower
+        rim = np.sqrt(2.0 * pattern.sag(drop.pressure) / drop.pressure)
+        wide = min(wide, drop.foot + rim + 1.5 * np.sqrt(pattern.cell))
+    return float(min(wide, widest))
 
 
-def estimated_pressure(pancake: Pancake, bond: float, volume: float) -> float:
-    """Pressure at a plane at 180 degrees, by the virial ``3 p V = 2 E_surf + 4 E_grav`` of the
-    start."""
-    u, w = gauss(20)
-    angle = pancake.turn * u
-    r = pancake.flat + pancake.radius * np.sin(angle)
-    z = pancake.radius * pancake.aspect * (np.cos(angle) - np.cos(pancake.turn))
-    rate = pancake.radius * pancake.turn * w
-    area = 2.0 * np.pi * r @ (rate * np.hypot(np.cos(angle), pancake.aspect * np.sin(angle)))
-    area += 2.0 * np.pi * pancake.flat**2
-    weight = bond * np.pi * (r**2 * z) @ (rate * pancake.aspect * np.sin(angle))
-    return float((2.0 * area + 4.0 * weight) / (3.0 * volume))
+def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many: bool) -> int:
+    """Elements from the middle of the foot to the widest place by default.
+
+    Raises
+    ------
+    SceneError
+        If the asperities are too small.
+    """
+    length, stiffness = pattern.length, pattern.stiffness
+    across = wide / reach * min(reach / FINE, 1.0)  # length of the even elements, by their number
+    needed = PER_RADIUS * across / length
+    if many and not stiffness:
+        needed = _graded(reach, PER_SPOT * wide / length)
+    if stiffness:
+        sunk = (drop.pressure + 2.0 / length) / stiffness / length
+        needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
+    if needed > MOST:
+        raise SceneError(
+            f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "
+            f"elements from the middle to a side, more than {MOST}: not available yet; give "
+            "larger asperities, or discretization.elements"
+        )
+    return max(FEWEST, int(np.ceil(needed)))
 
 
-def _meridian(pancake: Pancake, wide: float) -> Meridian:
+PARTS = np.linspace(FINE, 0.97, 221)
+"""Parts of the elements under the foot to choose from."""
+
+
+def _growth(reach: float, elements: Array | float) -> Array:
+    """(parts,) largest growth from element to element beside a foot that takes each of the parts:
+    of the slope ``s + A (1 - cos(pi t))`` of :class:`~iga_membrane.surface.closed.Stretch`."""
+    s = np.minimum(reach / PARTS, 1.0)
+    a = (1.0 - s) / (1.0 - PARTS)
+    return np.asarray(np.pi * a / np.sqrt(s * s + 2.0 * s * a) / ((1.0 - PARTS) * elements))
+
+
+def _fine_part(reach: float, elements: int) -> float:
+    """Largest part of the elements under the foot that the others can follow."""
+    gentle = np.flatnonzero(_growth(reach, elements) <= GROWTH)
+    return float(PARTS[gentle[-1] if len(gentle) else 0])
+
+
+def _graded(reach: float, under: float) -> float:
+    """Elements from the middle to a side with as many under the foot, the others growing."""
+    gentle = np.flatnonzero(_growth(reach, under / PARTS) <= GROWTH)
+    return float(under / PARTS[gentle[-1] if len(gentle) else 0])
+
+
+def _meridian(drop: FlatDrop, wide: float) -> Meridian:
     """The start's meridian; its directions are vertical as far out as asperities may be wet, and
     turn into its normals at the widest place."""
-    u = np.linspace(pancake.turn, 0.0, 2001)
-    b, rho, a = pancake.flat, pancake.radius, pancake.aspect
-    r, z = b + rho * np.sin(u), rho * a * (np.cos(u) - np.cos(pancake.turn))
-    angle = np.arctan2(a * np.sin(u), -np.cos(u))
-    part = np.clip((r - wide) / (b + rho - wide), 0.0, 1.0)
-    angle = np.where(u > 0.5 * np.pi, angle * part**2 * (3.0 - 2.0 * part), angle)
-    inside = r >= 1e-3 * rho
+    widest = float(drop.r.max())
+    part = np.clip((drop.r - wide) / (widest - wide), 0.0, 1.0)
+    angle = np.pi - drop.turn
+    angle = np.where(drop.turn > 0.5 * np.pi, angle * part**2 * (3.0 - 2.0 * part), angle)
     normal = np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
-    return Meridian(r[inside], z[inside], normal[inside])
+    return Meridian(drop.r, drop.z, normal)
 
 
 def ball(radius: float) -> Meridian:
@@ -169,3 +244,13 @@ def smallest_model(solid: Solid, reach: float, lateral: tuple[float, float]) -> 
     if lateral[0] or not mirrored(sample * [-1.0, 1.0, 1.0]):
         return "half"
     return "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"
+
+
+def cell_of(solid: Solid) -> float:
+    """Area of the substrate per asperity; infinite without asperities."""
+    if isinstance(solid, SphereLattice):
+        return solid.area_per_sphere
+    if isinstance(solid, Spheres):
+        place = np.asarray(solid.centers)[:, :2]
+        return float(np.prod(np.ptp(place, axis=0)) / len(place)) or np.inf
+    return float(np.inf)

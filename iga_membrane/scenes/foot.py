@@ -25,9 +25,9 @@ from ..terms import (
     TrimmedContactLine,
 )
 from ..terms.term import AnySolid
-from .asperities import ball, estimated_foot, smallest_model, whole_skin
+from .asperities import Pattern, ball, cell_of, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
-from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
+from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +137,8 @@ def _on_an_area(parts: Question) -> Foot:
     lies = attracts or least == 180.0
     unit_law = scale.length**2 / scale.tension
     stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
-    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, lies, parts.start, stiffness)
+    pattern = Pattern(length, cell_of(local), lies, stiffness)
+    skin = whole_skin(parts.down, unit, pattern, mesh.degree, elements, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
@@ -148,7 +149,10 @@ def _on_an_area(parts: Question) -> Foot:
     above = 0.0 if lies else 2.0 * largest_radius(local)
     # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
-    foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
+    law = parts.law
+    if skin.many and law.penalty is None:
+        law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
+    foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
     if attracts:
@@ -256,7 +260,7 @@ def _on_the_plane(parts: Question) -> Foot:
         )
     foot = _foot(Plane(STEEPEST), parts.liquid, scale.length, bond)
     length = foot.pancake.length
-    rim = estimated_foot(least_energy_pancake(180.0, bond, BALL, steepest=180.0), bond, BALL)
+    rim = rounded(bond, BALL).foot
     # the foot bends over its own radius or the capillary length, whichever is shorter
     first = min(3.5 / (np.sqrt(bond) * length), (4.0 * rim / length) ** 0.75)
     grading = Grading(float(min(1.0, first)))
