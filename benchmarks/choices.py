@@ -14,7 +14,7 @@ import numpy as np
 
 import iga_membrane as iga
 from iga_membrane.reference import drop_on_plane
-from iga_membrane.solver import assembly as assembly_module
+from iga_membrane.solver import rows as rows_module
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.solver.linear import Bordered
 from iga_membrane.terms import variations
@@ -48,12 +48,12 @@ def system(scene: iga.Scene) -> tuple:
 
 def dense_or_sparse() -> list[str]:
     rows = ["| unknowns | dense LDL^T, ms | sparse LU, ms |", "|---|---|---|"]
-    keep = assembly_module.DENSE_LIMIT
+    keep = rows_module.DENSE_LIMIT
     for elements, model in ((20, "eighth"), (20, "quarter"), (20, "half"), (20, "full"),
                             (40, "half")):  # fmt: skip
         spent = []
         for limit in (10**6, 0):
-            assembly_module.DENSE_LIMIT = limit
+            rows_module.DENSE_LIMIT = limit
             made, evaluate = system(drop(degree=3, elements=elements, model=model))
             s = evaluate()
             held = s.constraint_gradients.shape[1]
@@ -63,7 +63,7 @@ def dense_or_sparse() -> list[str]:
 
             spent.append(cpu(factor_and_solve))
         rows.append(f"| {made.size} | {spent[0]:.1f} | {spent[1]:.1f} |")
-    assembly_module.DENSE_LIMIT = keep
+    rows_module.DENSE_LIMIT = keep
     return rows
 
 
@@ -123,7 +123,7 @@ def main() -> None:
         "",
         *numpy_or_compiled(),
         "",
-        "## Gauss points (`solver/assembly.py`)",
+        "## Gauss points (`solver/functional.py`)",
         "",
         "Relative errors of the drop at 150 degrees, Bond number 1. The default is degree + 1 "
         "points along the meridian and max(degree, 3) round the ring.",

@@ -190,7 +190,7 @@ def droplet_row(angle: float, elements: int | None) -> str:
 def droplets() -> list[str]:
     both = (180.0, 175.0, 170.0, 165.0, 160.0, 155.0, 150.0, 145.0, 140.0, 135.0, 130.0)
     asked = [(angle, elements) for angle in both for elements in (None, 96)]
-    asked += [(120.0, None), (110.0, None)]
+    asked += [(120.0, None), (110.0, None), (100.0, None), (90.0, None)]
     return table(
         "| angle | unknowns | status | wet | height | energy | wet area | worst mean angle "
         "| forces / weight - 1 | its | CPU s |",

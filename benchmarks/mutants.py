@@ -44,7 +44,7 @@ MUTANTS = [
     ("solver/audit.py", "abs(inside - held.target) / held.value", "0.0 * held.value"),
     ("solver/audit.py", "+ lines[0].strength / tension\n", "- lines[0].strength / tension\n"),
     ("solver/audit.py", "forces.push - forces.line - weight", "forces.push - forces.line"),
-    ("solver/conclude.py", "if not value <= most:", "if False:"),
+    ("solver/judge.py", "if not value <= most:", "if False:"),
 ]  # fmt: skip
 
 

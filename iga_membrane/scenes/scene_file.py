@@ -7,33 +7,22 @@ import json
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from ..checks import choice, number, path_values, record, vector
+from ..checks import choice, path_values, record
 from ..errors import SceneError
-from ..solids import Plane, Sphere, SphereLattice, Spheres
-from .asperities import STARTS
-from .cell import asperity_cell
-from .droplet import HOLDS, sessile_droplet
-from .film import film_between_rings
-from .foot import CONTACT_LINES
-from .liquid import MODELS, Discretization, Liquid
+from .liquid import MODELS
 from .scene import Ramp, Scene
-from .scene_keys import KEYS, check_numbers, later, membrane_of, table_of
-from .sheet import liquid_sheet
+from .scene_keys import KEYS, check_numbers, later, table_of
+from .scene_readers import FOREIGN, READERS, solver_limits
 
 SCHEMA = 1
-Tables = dict[str, Mapping[str, Any]]
 LARGEST_FILE = 10_000_000
 
 SCENES = ("sessile_droplet", "liquid_sheet", "asperity_cell", "film_between_rings")
-MOTIONS = ("fixed", "vertical", "normal", "resting")
-SUBSTRATES = ("plane", "sphere", "sphere_lattice", "spheres", "none")
 
 
 @dataclass(frozen=True)
@@ -123,15 +112,15 @@ def read_scene(data: Any) -> SceneFile:
             check_numbers(f"{name}[{i}]", table_of(name, entry, f"{name}[{i}]"))
     for name, table in tables.items():
         check_numbers(name, table)
-    if kind not in _READERS:
+    if kind not in READERS:
         raise later(f'scene = "{kind}"')
-    for name in _FOREIGN[kind]:
+    for name in FOREIGN[kind]:
         if data.get(name):
             raise SceneError(f'{name}: does not belong to scene = "{kind}"; remove it')
-    limits = _solver(tables["solver"], kind)
+    limits = solver_limits(tables["solver"], kind)
     if data.get("path"):
         return SceneFile(_along_path(data), limits)
-    return SceneFile(_READERS[kind](data, tables), limits)
+    return SceneFile(READERS[kind](data, tables), limits)
 
 
 def _along_path(data: Mapping[str, Any]) -> Scene:
@@ -200,239 +189,6 @@ def with_number(
             f"{field} = {parameter!r}: there is no such place in the scene file"
         ) from error
     return changed
-
-
-def _contact(table: Mapping[str, Any]) -> dict[str, Any]:
-    """How contact areas are held, by the names of the scenes."""
-    law: dict[str, Any] = {}
-    if table.get("contact_line") == "line_load":
-        return law
-    if table.get("contact", "exact") == "penalty":
-        law["penalty"] = table.get("penalty", 1e4)
-    if "penetration_tolerance" in table:
-        law["penetration_tolerance"] = table["penetration_tolerance"]
-    return law
-
-
-def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
-    liquid, cell, substrate = tables["liquid"], tables["cell"], tables["substrate"]
-    for field, table in (("cell.size", cell), ("cell.pressure", cell),
-                         ("substrate.contact_angle", substrate)):  # fmt: skip
-        if field.rpartition(".")[2] not in table:
-            raise SceneError(f"{field}: missing; an asperity cell needs it")
-    solid = _substrate(dict(substrate) | {"kind": substrate.get("kind", "sphere")})
-    if isinstance(solid, Spheres) and len(solid.centers) == 1 and solid.base is None:
-        x, y, z = (float(c) for c in solid.centers[0])
-        angle, radius = float(np.ravel(solid.contact_angle)[0]), float(np.ravel(solid.radii)[0])
-        solid = Sphere(angle, radius, (x, y, z))
-    if not isinstance(solid, Sphere):
-        raise SceneError(
-            f'substrate.kind = "{substrate["kind"]}": a cell holds one sphere, "sphere" or '
-            '"spheres" with one centre, without a base'
-        )
-    return asperity_cell(
-        solid,
-        size=cell["size"],
-        pressure=cell["pressure"],
-        shape=cell.get("shape", "square"),
-        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
-        discretization=Discretization(**tables["discretization"]),
-        contact_line=_line(tables["solver"]),
-        **_contact(tables["solver"]),
-    )
-
-
-def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
-    if data.get("particle"):
-        raise later("[[particle]]")
-    liquid, substrate = tables["liquid"], tables["substrate"]
-    for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
-        if field.split(".")[1] not in table:
-            raise SceneError(f"{field}: missing; a sessile droplet needs it")
-    membrane = membrane_of(tables["solver"])
-    return sessile_droplet(
-        _substrate(substrate),
-        volume=liquid["volume"],
-        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
-        gravity=_gravity(tables["gravity"]),
-        discretization=Discretization(**tables["discretization"]),
-        hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
-        start=_start(tables["solver"]),
-        contact_line=_line(tables["solver"]),
-        membrane=membrane,
-        **_contact(tables["solver"]),
-    )
-
-
-def _line(table: Mapping[str, Any]) -> str:
-    """The way of the contact line; "line_load" is a membrane of its own."""
-    way = str(table.get("contact_line", "auto"))
-    return "auto" if way == "line_load" else way
-
-
-def _start(table: Mapping[str, Any]) -> str | None:
-    start = table.get("start", "auto")
-    if start.endswith(".npz"):
-        return None  # the solver reads it
-    choice("solver.start", start, ("auto", *STARTS))
-    return None if start == "auto" else str(start)
-
-
-def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Spheres:
-    """The solid under a droplet; a sphere or a lattice has its tops at z = 0."""
-    kind = choice("substrate.kind", table.get("kind", "plane"), SUBSTRATES)
-    if kind not in _SUBSTRATE_KEYS:
-        raise later(f'substrate.kind = "{kind}"')
-    allowed = _SUBSTRATE_KEYS[kind]
-    for key in table:
-        if key != "kind" and key not in allowed:
-            raise SceneError(
-                f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
-                f"it or choose another substrate.kind ({', '.join(SUBSTRATES)})"
-            )
-    angle = table["contact_angle"]
-    for key in _NEEDED[kind]:
-        if key not in table:
-            raise SceneError(f"substrate.{key}: missing; a {kind} needs it")
-    if isinstance(angle, list) and kind != "spheres":
-        raise SceneError(f"substrate.contact_angle = {angle}: one number is needed here")
-    if kind == "plane":
-        return Plane(angle)
-    if kind == "sphere":
-        x, y = _offset(table)
-        return Sphere(angle, table["radius"], (x, y, -table["radius"]))
-    if kind == "sphere_lattice":
-        return SphereLattice(
-            angle,
-            table["radius"],
-            table["spacing"],
-            table.get("arrangement", "square"),
-            _offset(table),
-            table.get("base"),
-        )
-    return Spheres(angle, table["centers"], table["radii"], table.get("base"))
-
-
-def _offset(table: Mapping[str, Any]) -> tuple[float, float]:
-    offset = table.get("offset", [0.0, 0.0])
-    if not isinstance(offset, list) or len(offset) != 2:
-        raise SceneError(f"substrate.offset = {offset!r}: two numbers [dx, dy] are needed")
-    return float(offset[0]), float(offset[1])
-
-
-_SUBSTRATE_KEYS = {
-    "plane": ("contact_angle",),
-    "sphere": ("contact_angle", "radius", "offset"),
-    "sphere_lattice": ("contact_angle", "radius", "spacing", "arrangement", "offset", "base"),
-    "spheres": ("contact_angle", "centers", "radii", "base"),
-}
-_NEEDED = {
-    "plane": (),
-    "sphere": ("radius",),
-    "sphere_lattice": ("radius", "spacing"),
-    "spheres": ("centers", "radii"),
-}
-
-
-def _film(data: Mapping[str, Any], tables: Tables) -> Scene:
-    liquid, rings = tables["liquid"], tables["rings"]
-    if "volume" in liquid:
-        raise SceneError("liquid.volume: a film's volume is rings.volume; move it there")
-    if "half_height" not in rings:
-        raise SceneError("rings.half_height: missing; a film between rings needs it")
-    return film_between_rings(
-        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
-        discretization=Discretization(**tables["discretization"]),
-        **rings,
-    )
-
-
-def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
-    liquid, sheet = tables["liquid"], tables["sheet"]
-    particles = data.get("particle", [])
-    if len(particles) > 1:
-        raise later(f"a sheet with {len(particles)} [[particle]] tables")
-    if "volume" in liquid:
-        raise SceneError("liquid.volume: a sheet's volume is sheet.volume; move it there")
-    if "size" not in sheet:
-        raise SceneError("sheet.size: missing; a liquid sheet needs it")
-    gravity = _gravity(tables["gravity"])
-    if gravity[0] or gravity[1] or gravity[2] > 0:
-        raise later("a sheet with gravity that does not point along -z")
-    return liquid_sheet(
-        _particle(particles[0]) if particles else None,
-        size=sheet["size"],
-        boundary=sheet.get("boundary", "square"),
-        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
-        gravity=abs(gravity[2]),
-        pressure=sheet.get("pressure"),
-        volume=sheet.get("volume"),
-        liquid_weight=sheet.get("liquid_weight", False),
-        discretization=Discretization(**tables["discretization"]),
-        contact_line=_line(tables["solver"]),
-        membrane=membrane_of(tables["solver"]),
-    )
-
-
-def _particle(given: Mapping[str, Any]) -> Sphere:
-    for key in ("radius", "center", "contact_angle"):
-        if key not in given:
-            raise SceneError(f"particle[0].{key}: missing; a particle needs it")
-    motion = given.get("motion", "fixed")
-    if choice("particle[0].motion", motion, MOTIONS) != "fixed":
-        raise later(f'particle[0].motion = "{motion}"')
-    return Sphere(
-        given["contact_angle"], given["radius"], given["center"], given.get("density", 0.0)
-    )
-
-
-_READERS: dict[str, Callable[[Mapping[str, Any], Tables], Scene]] = {
-    "sessile_droplet": _droplet,
-    "asperity_cell": _cell,
-    "film_between_rings": _film,
-    "liquid_sheet": _sheet,
-}
-_FOREIGN = {
-    "sessile_droplet": ("sheet", "cell", "rings"),
-    "asperity_cell": ("gravity", "particle", "droplet", "sheet", "rings"),
-    "film_between_rings": ("gravity", "substrate", "particle", "droplet", "sheet", "cell"),
-    "liquid_sheet": ("substrate", "droplet", "cell", "rings"),
-}
-
-
-def _gravity(table: Mapping[str, Any]) -> list[float]:
-    if "direction" in table and "acceleration" not in table:
-        raise SceneError("gravity.acceleration: missing, but gravity.direction is given")
-    size = number("gravity.acceleration", table.get("acceleration", 0.0), least=0.0)
-    direction = np.array(vector("gravity.direction", table.get("direction", [0.0, 0.0, -1.0])))
-    largest = float(np.abs(direction).max())
-    if not largest > 0:
-        raise SceneError("gravity.direction = [0, 0, 0]: must not be zero")
-    direction = direction / largest
-    return [float(g) for g in size * direction / np.linalg.norm(direction)]
-
-
-def _solver(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
-    words = {
-        "motion": ("spines", "cartesian"),
-        "contact": ("exact", "penalty"),
-        "contact_line": ("auto", "conforming", "trimmed", "adhesion", "line_load"),
-    }
-    for key, allowed in words.items():
-        if key in table:
-            choice(f"solver.{key}", table[key], allowed)
-    if table.get("contact_line", "auto") not in (*CONTACT_LINES, "line_load"):
-        raise later(f'solver.contact_line = "{table["contact_line"]}"')
-    if kind not in ("sessile_droplet", "liquid_sheet") and membrane_of(table) is not None:
-        raise later(f'solver.contact_line = "line_load" in scene = "{kind}"')
-    for key in ("stabilization", "penalty", "penetration_tolerance", "max_cpu_s", "max_memory_gb"):
-        if key in table:
-            number(f"solver.{key}", table[key], above=0.0)
-    limits: dict[str, Any] = {
-        key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table
-    }
-    start = table.get("start", "auto")
-    return limits | {"start": start} if start.endswith(".npz") else limits
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

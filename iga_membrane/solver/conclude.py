@@ -2,63 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from time import process_time
-from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..errors import GeometryError
 from ..scenes.scene import Scene
-from ..solids import Plane, Sphere, SphereLattice
 from ..surface.surface import Surface
-from ..terms import Centroid, Contact, LineTerm, PlaneContactLine, SphereContactLine, Volume
+from ..terms import Centroid, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
-from .contact_line import contact_line, vertical_forces
-from .footing import Footing, engulfed, footing
-from .forces import particle_forces, pull_on_sphere
+from .contact_record import contact_record
+from .forces import particle_forces
+from .judge import contact_objection, judge, overload, reaches_boundary, too_soft
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, Progress
-from .measures import measures, sphere_of, volume
+from .measures import measures, volume
 from .newton import NewtonResult
 from .options import SolverOptions
 from .solution import Solution
 from .stability import Stability, stability_of
 from .status import REMEDY, Status
 from .trimmed_audit import trimmed_audit
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """What the audit lets pass; beyond, the status is not a success.
-
-    Attributes
-    ----------
-    residual : weak form on doubled quadrature.
-    volume : relative error of the volume.
-    force : vertical balance of the drop; sideways : horizontal one on asperities, where the
-        directions of the forces are those of a few contact points on each.
-    line : the same from the spline's own contact angle.
-    angle : error of the mean cosine of the contact angle; where a membrane passes through spheres,
-        on each of them.
-    penetration : depth below a plane over the scene's length.
-    indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
-    """
-
-    residual: float = 1e-3
-    volume: float = 1e-4
-    force: float = 1e-3
-    sideways: float = 5e-3
-    line: float = 2e-2
-    angle: float = 2e-2
-    penetration: float = 1e-6
-    indentation: float = 1e-2
-
-
-TOLERANCE = Tolerance()
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,20 +58,20 @@ def conclude(
     inside = volume(assembly, surface)
     if status is None:
         assert verdict is not None
-        status, message = _judge(scene, verdict, checked, inside)
+        status, message = judge(scene, verdict, checked, inside)
         on_area = assembly.contact is not None and scene.line_inside is None
         if on_area or assembly.trim is not None:
-            objection = _contact_objection(scene, assembly, surface, multipliers)
+            objection = contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
-    sunk = _too_soft(scene, assembly, multipliers)
+    sunk = too_soft(scene, assembly, multipliers)
     if sunk is not None and status is not Status.INTERRUPTED:
         status, message = sunk
-    if result.status not in (None, Status.INTERRUPTED) and _reaches_boundary(scene, surface):
+    if result.status not in (None, Status.INTERRUPTED) and reaches_boundary(scene, surface):
         status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
         message = "the contact line reaches the rim: no sheet is left between them"
     if status not in (Status.CONVERGED_STABLE, Status.INTERRUPTED):
-        message += _overload(scene, assembly, multipliers)
+        message += overload(scene, assembly, multipliers)
     scale = scene.units
     found = measures(scene, assembly, surface, multipliers)
     total = process_time() - started - assembly.compile_seconds
@@ -123,7 +90,7 @@ def conclude(
         audit=checked,
         volume_error=_volume_error(scene, inside),
         hold_force=hold,
-        contact=_contact(scene, assembly, result, found, checked),
+        contact=contact_record(scene, assembly, result, found, checked),
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
         load_steps=tuple(outcome.steps),
@@ -175,62 +142,6 @@ def _volume_error(scene: Scene, inside: float) -> float | None:
     return abs(inside - held.target) / held.value if held else None
 
 
-NARROW = 0.02, 0.05
-"""Width of a sheet over its rim's size, and gap between rim and particle over its radius, that
-leave no room for a sheet."""
-
-
-def _too_soft(scene: Scene, assembly: Assembly, multipliers: Array) -> tuple[Status, str] | None:
-    """A penalty that cannot hold the membrane out of the spheres: it gives way by the traction
-    ``p + 2 gamma / r`` over the penalty."""
-    law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
-    if law is None or law.penalty is None or assembly.contact is None:
-        return None
-    length = assembly.contact.length
-    curved = 0.0 if isinstance(law.solid, Plane) else 2.0 * assembly.tension / length
-    pressure = abs(assembly.density(multipliers).constant)
-    depth = (pressure + curved) / law.penalty / length
-    if depth <= 2.0 * law.depth:
-        return None
-    return Status.PENETRATION, (
-        f"a penalty of {law.penalty:.3g} gives way by {depth:.1e} radii, {law.depth:.0e} is "
-        "allowed: raise solver.penalty, use exact contact, or raise solver.penetration_tolerance"
-    )
-
-
-def _overload(scene: Scene, assembly: Assembly, multipliers: Array) -> str:
-    """Whether the pressure is more than a lattice carries at 180 degrees, in words.
-
-    A sphere carries at most ``(p + 2 gamma / r) pi r^2``, with the membrane at its equator, and far
-    from the droplet's rim it must carry the pressure on its cell of the lattice.
-    """
-    law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
-    if law is None or not isinstance(law.solid, SphereLattice):
-        return ""
-    disc = np.pi * law.solid.radius**2
-    most = 2.0 * assembly.tension / law.solid.radius * disc / (law.solid.area_per_sphere - disc)
-    pressure = -assembly.density(multipliers).constant
-    if not pressure > most:
-        return ""
-    unit = scene.units.pressure
-    return (
-        f"; the pressure came to {pressure * unit:.4g}, and a wide lattice of these asperities "
-        f"carries {most * unit:.4g} at most: take a smaller spacing, or less volume or gravity"
-    )
-
-
-def _reaches_boundary(scene: Scene, surface: Surface) -> bool:
-    """Whether a sheet's contact line has come to its rim."""
-    solid = sphere_of(scene)
-    if scene.kind != "liquid_sheet" or solid is None or scene.directions is not None:
-        return False
-    inner, rim = surface.net[:, 0], surface.net[:, -1]
-    width = float(np.linalg.norm(rim - inner, axis=1).min())
-    size = float(np.ptp(rim, axis=0).max())
-    between = float(solid.gap(contact_line(surface, "xi2=1").position).min())
-    return width <= NARROW[0] * size or between <= NARROW[1] * solid.radius
-
-
 def _hold_force(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[float, float, float]:
@@ -242,236 +153,6 @@ def _hold_force(
             local["xyz".index(term.axis)] = multiplier * inside
     x, y, z = (float(f) for f in scene.units.axes @ local * scene.units.force)
     return x, y, z
-
-
-def _unheld(scene: Scene) -> str:
-    """Axes along which nothing but the computation holds the membrane."""
-    return "".join(axis for axis in scene.loose_axes if axis not in scene.hold)
-
-
-def _judge(
-    scene: Scene, verdict: Stability, checked: Audit | None, inside: float
-) -> tuple[Status, str]:
-    """Status of a converged state."""
-    slipping = {a: f for a, f in scene.lateral_load.items() if a in _unheld(scene)}
-    if slipping:
-        pull = float(np.linalg.norm(list(slipping.values())))
-        force = pull * inside * scene.units.force
-        return Status.NO_EQUILIBRIUM, (
-            f"nothing balances a tangential force of {force:.6g}: a smooth plane holds no droplet "
-            'against it; hold the centroid (droplet.hold = "xy") or level the plane'
-        )
-    if checked is not None:
-        found = _defect(checked, _tolerated_depth(scene))
-        if found is not None:
-            return found
-    if verdict.index > 0 and verdict.smallest < 0:
-        return Status.CONVERGED_SADDLE, (
-            f"equilibrium, but unstable: {verdict.index} motion(s) lower the energy (eigenvalue "
-            f"{verdict.smallest:.3g}); disturb the start to leave it"
-        )
-    pinned = {t.axis for t in scene.terms if isinstance(t, Centroid)}
-    neutral = [axis for axis in scene.loose_axes if axis not in pinned]
-    if neutral:
-        return Status.CONVERGED_MARGINAL, (
-            f"equilibrium, but free to slide along {', '.join(neutral)}; add a Centroid there or "
-            "take a symmetric model"
-        )
-    if verdict.marginal or verdict.index > 0:
-        return Status.CONVERGED_MARGINAL, (
-            f"equilibrium, but the smallest eigenvalue {verdict.smallest:.1e} is below its own "
-            f"error {verdict.error:.1e}"
-        )
-    if checked is None:
-        return Status.UNVERIFIED, "converged and stable, but not audited"
-    return Status.CONVERGED_STABLE, "converged, audited and stable"
-
-
-def _tolerated_depth(scene: Scene) -> float:
-    """Depth in the solid over its contact length."""
-    law = next((t for t in scene.terms if isinstance(t, Contact)), None)
-    if law is not None:
-        return law.depth
-    curved = isinstance(scene.substrate, Sphere)
-    return TOLERANCE.indentation if curved else TOLERANCE.penetration
-
-
-def _defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
-    """The audit's objection, or None."""
-    limit = TOLERANCE
-    if not checked.penetration <= depth:
-        return Status.PENETRATION, (
-            f"the membrane lies up to {checked.penetration:.1e} radii (plane: lengths) inside the "
-            f"substrate, {depth:.0e} is allowed: take more discretization.elements or raise "
-            "solver.penetration_tolerance"
-        )
-    for what, value, most in (
-        ("residual on doubled quadrature", checked.residual, limit.residual),
-        ("volume error", checked.volume, limit.volume),
-        ("vertical force balance", checked.force, limit.force),
-        ("horizontal force balance", checked.sideways, limit.sideways),
-        ("force balance at the contact line", checked.line, limit.line),
-        ("error of the contact angle's cosine", abs(checked.angle), limit.angle),
-    ):
-        if not value <= most:
-            return Status.UNDERRESOLVED, (
-                f"the audit's {what} is {value:.1e} (allowed {most:.0e}): take more "
-                "discretization.elements or a higher degree"
-            )
-    return None
-
-
-def _contact(
-    scene: Scene,
-    assembly: Assembly,
-    result: NewtonResult,
-    found: Mapping[str, float],
-    checked: Audit | None,
-) -> dict[str, Any]:
-    """Contact with the substrate, by the names of the result file."""
-    surface, scale = result.surface, scene.units
-    on_area = assembly.contact is not None and scene.line_inside is None
-    if on_area or assembly.trim is not None:
-        return _footing(scene, assembly, result, found, checked)
-    line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
-    if line is None:
-        return {}
-    unit = scale.length
-    if isinstance(line, PlaneContactLine):
-        body = assembly.density(result.multipliers)
-        at = contact_line(surface, line.edge)
-        forces = vertical_forces(at, body, line.gamma, line.contact_angle)
-        support = forces.push - forces.line
-    else:
-        support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
-    if isinstance(line, SphereContactLine):
-        unit *= line.sphere.radius
-    rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))
-    return {
-        "wet_solids": 1,
-        "wet_area": found["A_wet"],
-        "wet_fraction": found["A_wet"] / (np.pi * rim**2),
-        "max_penetration": checked.penetration * unit if checked else None,
-        "deepest_point": _deepest(scene, checked),
-        "support_force": support * scale.force,
-    }
-
-
-def _deepest(scene: Scene, checked: Audit | None) -> list[float] | None:
-    """World point where the membrane lies deepest in the solid, or nearest to it."""
-    if checked is None or checked.deepest is None:
-        return None
-    place: list[float] = scene.units.to_world(np.array(checked.deepest)).tolist()
-    return place
-
-
-def _footing(
-    scene: Scene,
-    assembly: Assembly,
-    result: NewtonResult,
-    found: Mapping[str, float],
-    checked: Audit | None,
-) -> dict[str, Any]:
-    """Contact area by area, by the names of the result file."""
-    scale, on = scene.units, assembly.contact or assembly.trim
-    assert on is not None
-    body = assembly.density(result.multipliers)
-    feet = footing(scene, assembly, result.surface, body)
-    rows = [
-        {
-            "index": int(which),
-            "center": scale.to_world(center).tolist(),
-            "force": float(np.linalg.norm(force)) * scale.force,
-            "force_vector": (scale.axes @ force * scale.force).tolist(),
-            "wet_area": float(area) * scale.length**2,
-            "contact_angle": float(angle),
-        }
-        for which, center, force, area, angle in zip(
-            feet.which, feet.centers, feet.forces, feet.areas, feet.angles, strict=True
-        )
-        if which >= 0
-    ]
-    foot = np.pi * found["contact_radius"] ** 2 if "contact_radius" in found else 0.0
-    wet = float(feet.areas.sum()) * scale.length**2
-    return {
-        "wet_solids": len(feet.which),
-        "asperities": rows,
-        "wet_area": wet,
-        "wet_fraction": wet / foot if foot else None,
-        "max_penetration": checked.penetration * on.length * scale.length if checked else None,
-        "deepest_point": _deepest(scene, checked),
-        "support_force": -float(feet.total[2]) * scale.force,
-        "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
-    }
-
-
-ACROSS = 4
-"""Elements across a wet asperity that resolve it."""
-
-
-def _contact_objection(
-    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
-) -> tuple[Status, str | None, str] | None:
-    """What makes a converged state on a contact area no success, or None."""
-    feet = footing(scene, assembly, surface, assembly.density(multipliers))
-    lines = assembly.trim is not None
-    under = _under_base(scene, assembly, surface) if lines else (feet.which < 0).any()
-    if under and not isinstance(scene.substrate, Plane):
-        return (
-            Status.TOPOLOGY_CHANGE,
-            "touches_base",
-            "the liquid touches the plane under the asperities",
-        )
-    contact = assembly.contact
-    across = np.inf if contact is None else contact.across(contact.touch(surface.points))
-    if across < ACROSS:
-        return (
-            Status.UNDERRESOLVED,
-            None,
-            f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
-            "discretization.elements",
-        )
-    if lines:
-        off = np.cos(np.radians(feet.angles)) - np.cos(np.radians(_young(scene, feet)))
-        worst = int(np.abs(off).argmax())
-        if abs(off[worst]) > TOLERANCE.angle:
-            return (
-                Status.UNDERRESOLVED,
-                None,
-                f"the mean contact angle on sphere {int(feet.which[worst])} is "
-                f"{feet.angles[worst]:.1f} degrees instead of "
-                f"{_young(scene, feet)[worst]:g}: take more discretization.elements",
-            )
-    inside = engulfed(scene, assembly, surface)
-    if inside:
-        return (
-            Status.TOPOLOGY_CHANGE,
-            "engulfed",
-            f"{inside} asperities lie inside the liquid: the membrane has passed them; start from "
-            "the flat solution or with a smaller load",
-        )
-    return None
-
-
-def _young(scene: Scene, feet: Footing) -> Array:
-    """(k,) Young's angles of the wet spheres, degrees."""
-    solid = scene.substrate
-    assert solid is not None
-    angles = np.asarray(solid.contact_angle)
-    return np.asarray(angles[feet.which] if angles.ndim else np.full(len(feet.which), angles))
-
-
-def _under_base(scene: Scene, assembly: Assembly, surface: Surface) -> bool:
-    """Whether a membrane that passes through spheres has come down to the plane under them."""
-    trim = assembly.trim
-    assert trim is not None
-    assert scene.substrate is not None
-    base = getattr(scene.units.local_solid(scene.substrate), "base", None)
-    if base is None:
-        return False
-    outside = trim.outside(surface.points)
-    lowest = assembly.table.values @ surface.points[assembly.table.functions]
-    return bool((lowest[outside.share > 0][..., 2] <= base).any())
 
 
 def _named(

@@ -94,7 +94,7 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
             pressed[k] = trim.cap(surface.points, push)
         total = footing(scene, assembly, surface, own).total
         return Pull(total, assembly.whole(pressed))
-    (term, edge), body = assembly.lines[0], assembly.density(multipliers)
+    (term, edge), body = assembly.edges.lines[0], assembly.density(multipliers)
     points = surface.points
     if isinstance(term, SphereContactLine) and term.covered:
         return _pull_through(assembly, surface, term.edge)
@@ -108,13 +108,32 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
     total = term.forces(edge, points, term.strength, body).sum(axis=(0, 1))
     # raising the cap changes the body integrals under it; shifting it sideways does not
     total[2] += pressure[2]
-    total += assembly.gap_force(surface, multipliers)
+    total += assembly.edges.push(points, assembly.line_load(multipliers))
     fading = 1.0 - surface.space.abscissae[..., 1]
     along = points_of(surface.space, fading[..., None])
     for i in range(3):
-        total[i] -= assembly.work(surface, multipliers, along * np.eye(3)[i])
+        total[i] -= _work(assembly, surface, multipliers, along * np.eye(3)[i])
     whole = assembly.whole
     return Pull(whole(total), whole(pressure))
+
+
+def _work(assembly: Assembly, surface: Surface, multipliers: Array, displacement: Array) -> float:
+    """Derivative of the Lagrangian along any displacement (count, 3) of the control points."""
+    points, body = surface.points, assembly.density(multipliers)
+    table, contact, edges = assembly.table, assembly.contact, assembly.edges
+    pull = forces(table, element_points(table, points), assembly.tension, body)
+    total = float((pull * displacement[table.functions]).sum())
+    if contact is not None:
+        push = contact.forces(contact.touch(points))
+        total += float((push * displacement[contact.table.functions]).sum())
+    for term, edge in edges.lines:
+        pull = term.forces(edge, points, term.strength, body)
+        total += float((pull * displacement[edge.functions]).sum())
+    loads = assembly.line_load(multipliers)
+    for gap, edge in edges.gaps:
+        pull = np.einsum("ekai,ek->eai", gap.gradients(edge, points), loads[edge.functions])
+        total -= float((pull * displacement[edge.functions]).sum())
+    return total
 
 
 def _pull_through(assembly: Assembly, surface: Surface, edge: str) -> Pull:

@@ -91,7 +91,7 @@ def _surface_energies(
     """Energies and areas where the membrane covers the wetted area, without penalty and
     stabilization."""
     scale, table = scene.units, assembly.table
-    (term, edge), edge_place = assembly.lines[0], surface.space.edge_place
+    (term, edge), edge_place = assembly.edges.lines[0], surface.space.edge_place
     assert isinstance(term, (PlaneContactLine, SphereContactLine))
     at = vary.element_points(table, surface.points)
     free = np.flatnonzero(table.parameters[:, 0, 1] > edge_place(term.edge)[1])
@@ -300,7 +300,8 @@ def _sheet(
 def _under_hole(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     """What the flux of ``z e_z`` through a covered sphere leaves out: the cap inside the fixed edge
     of its membrane."""
-    line = assembly.lines[0][0] if assembly.lines else None
+    lines = assembly.edges.lines
+    line = lines[0][0] if lines else None
     if not isinstance(line, SphereContactLine) or not line.covered:
         return 0.0
     sectors = np.arange(surface.space.bases[0].elements // assembly.copies)

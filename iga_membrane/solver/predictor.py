@@ -1,4 +1,5 @@
-"""Where to start: the equilibrium of a nearby scene, pressed through the spheres it touches."""
+"""The first solve of a scene: how it iterates, and the nearby equilibrium that it may start from,
+pressed through the spheres it touches."""
 
 from __future__ import annotations
 
@@ -9,7 +10,9 @@ from ..scenes.scene import Scene
 from ..surface.sector import mirrors
 from ..surface.surface import Surface
 from .assembly import Assembly
-from .newton import NewtonOptions, NewtonResult, newton
+from .meeting import law_of, line_of
+from .newton import NEAR, NewtonOptions, NewtonResult, newton
+from .options import SolverOptions
 
 SHALLOW = 0.6
 """Part of its depth under a flat membrane below which a spot is pressed to that depth."""
@@ -18,6 +21,20 @@ WIDE = 1.5
 DIMPLE = 0.3
 """Depth over radius of a dimple in the middle of every spot: inside its solid the start must lie
 clear of the solid's surface, which a membrane on a penalty follows."""
+
+
+def settings_of(scene: Scene, options: SolverOptions, started: float) -> NewtonOptions:
+    """How Newton's method iterates from a scene's own start, at CPU time ``started``."""
+    # a droplet on asperities may roll to a place where it is stable
+    near = 0.0 if _rolls(scene) else NEAR
+    deadline = started + options.max_cpu_s
+    return NewtonOptions(options.max_iterations, options.tolerance, near=near, deadline=deadline)
+
+
+def _rolls(scene: Scene) -> bool:
+    """Whether the membrane lies on solids or passes through several of them."""
+    through = line_of(scene) is not None and scene.kind == "sessile_droplet"
+    return law_of(scene) is not None or through
 
 
 def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonResult:

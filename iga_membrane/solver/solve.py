@@ -13,14 +13,13 @@ import numpy as np
 from ..checks import choice, record
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
-from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
 from .load_stepping import LoadPath, LoadStep, load_stepping
-from .newton import NEAR, NewtonOptions, NewtonResult, newton
+from .newton import NewtonOptions, NewtonResult, newton
 from .options import ON_FAIL, SolverOptions
-from .predictor import first
+from .predictor import first, settings_of
 from .quasi_static import quasi_static
 from .solution import Solution
 from .state import journal_of, start_surface
@@ -76,13 +75,7 @@ def solve(
         raise SceneError(
             "discretization.elements: the mesh does not fit into memory; choose fewer elements"
         ) from error
-    settings = NewtonOptions(
-        options.max_iterations,
-        options.tolerance,
-        # a droplet on asperities may roll to a place where it is stable
-        near=0.0 if _rolls(scene) else NEAR,
-        deadline=started + options.max_cpu_s,
-    )
+    settings = settings_of(scene, options, started)
     if halfway:
         path = _stepped(scene, assembly, settings, options, report)
         outcome = Outcome(path.scene, path.result, path.steps, path.bracket, path.progress)
@@ -119,13 +112,6 @@ def _stepped(
     return load_stepping(
         scene.ramp, assembly, settings, options.min_load_step, report, journal=journal
     )
-
-
-def _rolls(scene: Scene) -> bool:
-    """Whether the membrane lies on solids or passes through several of them."""
-    through = any(isinstance(t, TrimmedContactLine) for t in scene.terms)
-    lies = any(isinstance(t, Contact) for t in scene.terms)
-    return lies or (through and scene.kind == "sessile_droplet")
 
 
 def _delivered(solution: Solution, on_fail: str) -> Solution:

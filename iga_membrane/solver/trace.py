@@ -14,9 +14,9 @@ from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
-from .newton import NEAR, NewtonOptions, NewtonResult
+from .newton import NewtonOptions, NewtonResult
 from .options import ON_FAIL, SolverOptions
-from .predictor import first
+from .predictor import first, settings_of
 from .solution import Solution
 from .state import journal_of
 
@@ -93,11 +93,11 @@ def walk(
 ) -> list[Solution]:
     """Solutions at the ramp's values; the last one says how the walk ended."""
     started = process_time()
+    if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
+        return _each(ramp, options, started, report)
     settings = NewtonOptions(
         options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
     )
-    if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
-        return _each(ramp, settings, options, started, report)
     assembly = Assembly(ramp(0.0), options.quadrature)
     journal = journal_of(ramp, options)
     if options.start is not None and journal.start is None:
@@ -127,11 +127,7 @@ def _formulation(scene: Scene) -> frozenset[str]:
 
 
 def _each(
-    ramp: Ramp,
-    settings: NewtonOptions,
-    options: SolverOptions,
-    started: float,
-    report: Callable[[float], None],
+    ramp: Ramp, options: SolverOptions, started: float, report: Callable[[float], None]
 ) -> list[Solution]:
     """Solutions at the ramp's values where its formulation changes, as between contact areas at 180
     degrees and contact lines below: each from its own start, which its predictor brings near."""
@@ -140,8 +136,7 @@ def _each(
     for load in ramp.stops:
         scene = ramp(load)
         assembly = Assembly(scene, options.quadrature)
-        near = 0.0 if scene.kind == "sessile_droplet" else NEAR
-        state = first(scene, assembly, replace(settings, near=near))
+        state = first(scene, assembly, settings_of(scene, options, started))
         history.append(LoadStep(load, len(state.iterations), state.status, ramp.value(load)))
         found.append(conclude(Outcome(scene, state, []), assembly, options, started))
         if not found[-1].success:

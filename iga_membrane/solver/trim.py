@@ -37,7 +37,6 @@ class Outside:
     touched : (elements,) whether an element is cut.
     area : functions in the outer parts of cut elements, by pieces.
     line, ends : functions on contact lines and at the ends of their pieces.
-    elements : (pieces,) the element of each piece of line.
     """
 
     share: Array
@@ -45,7 +44,6 @@ class Outside:
     area: Table
     line: LineTable
     ends: LineTable
-    elements: Index
 
 
 class Trim:
@@ -190,7 +188,6 @@ class Trim:
             self._line_table(
                 near[ends.rows], ends.u, ends.weights, made.across[owner], made.rising[owner], False
             ),
-            near[line.rows],
         )
 
     def _core(self, x: Array, which: Index) -> tuple[Array, Array]:

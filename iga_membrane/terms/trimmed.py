@@ -72,7 +72,8 @@ class Line:
     Attributes
     ----------
     table : functions there; ``across`` the coordinate h and ``rising`` the sign of ``g_h``.
-    x, m, area : position, ``a_1 x a_2`` and its length.
+    x, a1, a2 : position and tangents.
+    m, area : ``a_1 x a_2`` and its length.
     ah, ao, xhh, xho : derivatives along h and o.
     at : nearest surface of the solid; cosine of its contact angle.
     gh, go : slopes of the gap.

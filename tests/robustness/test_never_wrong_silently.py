@@ -8,7 +8,7 @@ import iga_membrane as iga
 from iga_membrane.reference import drop_on_plane
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.solver.audit import Audit, audit
-from iga_membrane.solver.conclude import TOLERANCE, _defect
+from iga_membrane.solver.judge import TOLERANCE, defect
 from iga_membrane.splines import points_of
 
 TENSION = iga.SurfaceTension(1.0)
@@ -145,8 +145,8 @@ def test_a_spline_surface_with_a_kink_is_refused():
 @pytest.mark.parametrize("name", ["residual", "volume", "force", "line", "angle", "penetration"])
 def test_every_objection_of_the_audit_counts(name):
     clean = dict.fromkeys(("residual", "volume", "force", "line", "angle", "penetration"), 0.0)
-    assert _defect(Audit(**clean), TOLERANCE.penetration) is None
-    status, message = _defect(
+    assert defect(Audit(**clean), TOLERANCE.penetration) is None
+    status, message = defect(
         Audit(**clean | {name: 1.1 * getattr(TOLERANCE, name)}), TOLERANCE.penetration
     )
     named = iga.Status.PENETRATION if name == "penetration" else iga.Status.UNDERRESOLVED
@@ -156,7 +156,7 @@ def test_every_objection_of_the_audit_counts(name):
 
 def test_a_membrane_through_a_sphere_is_penetration():
     deep = Audit(residual=0.0, penetration=1.1 * TOLERANCE.indentation)
-    assert _defect(deep, TOLERANCE.indentation)[0] is iga.Status.PENETRATION
+    assert defect(deep, TOLERANCE.indentation)[0] is iga.Status.PENETRATION
 
 
 def test_the_audit_sees_a_membrane_inside_its_sphere():

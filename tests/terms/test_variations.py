@@ -150,11 +150,11 @@ def test_gradient_agrees_with_the_complex_step(scene):
     area, bodies = vary.energies(assembly.table, at, [assembly.density(multipliers)])
     total = assembly.tension * area + bodies[0]
     body = assembly.density(multipliers)
-    lines = (term.energy(edge, points, term.strength, body) for term, edge in assembly.lines)
+    lines = (term.energy(edge, points, term.strength, body) for term, edge in assembly.edges.lines)
     total = total + sum(lines)
     loads = np.append(multipliers[len(assembly.constraints) :], 0.0)
-    for gap, edge in assembly._gaps:
-        total = total - (loads[assembly._held_numbers(edge)] * gap.values(edge, points)).sum()
+    for gap, edge in assembly.edges.gaps:
+        total = total - (loads[assembly.rows.held(edge)] * gap.values(edge, points)).sum()
     exact = system.residual(multipliers)
     scale = np.linalg.norm(exact) * np.linalg.norm(direction)
     assert abs(total.imag / h - exact @ direction) <= 1e-12 * scale

@@ -1,0 +1,102 @@
+"""Contact of a solved membrane with its substrate, by the names of the result file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..scenes.scene import Scene
+from ..solids import Plane
+from ..terms import LineTerm, PlaneContactLine, SphereContactLine
+from .assembly import Assembly
+from .audit import Audit
+from .contact_line import contact_line, vertical_forces
+from .footing import footing
+from .forces import pull_on_sphere
+from .newton import NewtonResult
+
+
+def contact_record(
+    scene: Scene,
+    assembly: Assembly,
+    result: NewtonResult,
+    found: Mapping[str, float],
+    checked: Audit | None,
+) -> dict[str, Any]:
+    """Contact with the substrate, by the names of the result file."""
+    surface, scale = result.surface, scene.units
+    on_area = assembly.contact is not None and scene.line_inside is None
+    if on_area or assembly.trim is not None:
+        return _footing(scene, assembly, result, found, checked)
+    line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
+    if line is None:
+        return {}
+    unit = scale.length
+    if isinstance(line, PlaneContactLine):
+        body = assembly.density(result.multipliers)
+        at = contact_line(surface, line.edge)
+        forces = vertical_forces(at, body, line.gamma, line.contact_angle)
+        support = forces.push - forces.line
+    else:
+        support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
+    if isinstance(line, SphereContactLine):
+        unit *= line.sphere.radius
+    rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))
+    return {
+        "wet_solids": 1,
+        "wet_area": found["A_wet"],
+        "wet_fraction": found["A_wet"] / (np.pi * rim**2),
+        "max_penetration": checked.penetration * unit if checked else None,
+        "deepest_point": _deepest(scene, checked),
+        "support_force": support * scale.force,
+    }
+
+
+def _deepest(scene: Scene, checked: Audit | None) -> list[float] | None:
+    """World point where the membrane lies deepest in the solid, or nearest to it."""
+    if checked is None or checked.deepest is None:
+        return None
+    place: list[float] = scene.units.to_world(np.array(checked.deepest)).tolist()
+    return place
+
+
+def _footing(
+    scene: Scene,
+    assembly: Assembly,
+    result: NewtonResult,
+    found: Mapping[str, float],
+    checked: Audit | None,
+) -> dict[str, Any]:
+    """Contact area by area, by the names of the result file."""
+    scale, on = scene.units, assembly.contact or assembly.trim
+    assert on is not None
+    body = assembly.density(result.multipliers)
+    feet = footing(scene, assembly, result.surface, body)
+    rows = [
+        {
+            "index": int(which),
+            "center": scale.to_world(center).tolist(),
+            "force": float(np.linalg.norm(force)) * scale.force,
+            "force_vector": (scale.axes @ force * scale.force).tolist(),
+            "wet_area": float(area) * scale.length**2,
+            "contact_angle": float(angle),
+        }
+        for which, center, force, area, angle in zip(
+            feet.which, feet.centers, feet.forces, feet.areas, feet.angles, strict=True
+        )
+        if which >= 0
+    ]
+    foot = np.pi * found["contact_radius"] ** 2 if "contact_radius" in found else 0.0
+    wet = float(feet.areas.sum()) * scale.length**2
+    return {
+        "wet_solids": len(feet.which),
+        "asperities": rows,
+        "wet_area": wet,
+        "wet_fraction": wet / foot if foot else None,
+        "max_penetration": checked.penetration * on.length * scale.length if checked else None,
+        "deepest_point": _deepest(scene, checked),
+        "support_force": -float(feet.total[2]) * scale.force,
+        "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
+    }
