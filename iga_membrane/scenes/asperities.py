@@ -11,10 +11,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Solid, SphereLattice, Spheres
+from ..solids import Solid
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from .liquid import Model
+from .pattern import FINE, NARROW, PER_SPACING, WIDER, Pattern, element_size, fine_part, graded
 from .start import FlatDrop, flat_drop, rounded
 
 STARTS = ("flat", "above", "touching")
@@ -30,61 +31,6 @@ MOST = 600
 SPREAD = 1.15
 """Growth of the finely meshed foot below 180 degrees; the same for all angles, so that paths in the
 angle keep their mesh."""
-FINE = 0.75
-"""Part of the elements from the middle of the square to a side that lies under the foot."""
-
-
-MANY = 100
-"""Asperities under the foot from which they are many: the start is then the drop on their tops,
-pressed on them, and contact is a hard penalty at all quadrature points."""
-PER_SPOT = 2.2
-"""Elements along the radius of the smallest of many asperities, by default."""
-SUNK = 3e-4
-"""Depth over radius to which that penalty lets the membrane sink."""
-GROWTH = 0.15
-"""Largest growth from one element to the next beside the evenly meshed foot of many asperities."""
-
-
-@dataclass(frozen=True)
-class Pattern:
-    """What carries a droplet (dimensionless).
-
-    Attributes
-    ----------
-    length : over which the contact changes: radius of the smallest asperity.
-    cell : area of the substrate per asperity; infinite without asperities.
-    lies : whether the membrane lies on the asperities; where it passes through them, below 180
-        degrees, more of them are wet.
-    stiffness : traction over depth of a penalty that was asked for, else 0: the mesh is then as
-        fine as the depth asks for.
-    """
-
-    length: float
-    cell: float = np.inf
-    lies: bool = True
-    stiffness: float = 0.0
-
-    def many(self, foot: float) -> bool:
-        """Whether many asperities lie under a foot of a radius."""
-        return self.lies and np.pi * foot**2 > MANY * self.cell
-
-    def sag(self, pressure: float) -> float:
-        """Mean depth under the tops of a membrane of tension 1 that lies on a wide square lattice:
-        the potential of a lattice of point forces ``pressure * cell``, cut off at spots of radius
-        a, ``a^2 = pressure cell length / 2 pi``."""
-        spot = np.sqrt(pressure * self.cell * self.length / (2.0 * np.pi))
-        log = np.log(np.sqrt(self.cell) / spot) - ROBIN
-        return float(pressure * self.cell * (2.0 * log + 1.0) / (4.0 * np.pi))
-
-    def penalty(self, pressure: float) -> float:
-        """Traction over depth with which the smallest asperity lets the membrane sink by
-        ``SUNK``."""
-        return (pressure + 2.0 / self.length) / (SUNK * self.length)
-
-
-ROBIN = 1.3105329259
-"""``log(2 pi |eta(i)|^2)``, eta being Dedekind's: constant of the potential of a unit square
-lattice."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +41,7 @@ class Skin:
     ----------
     space, points, directions : of the membrane.
     pressure : estimated at its foot.
-    many : whether many asperities carry it.
+    many : whether many asperities carry it; narrow : each of them at one point of the mesh.
     """
 
     space: Space
@@ -103,6 +49,7 @@ class Skin:
     directions: Array
     pressure: float
     many: bool
+    narrow: bool
 
 
 def whole_skin(
@@ -132,7 +79,9 @@ def whole_skin(
     reach = inverse_lemniscate_sine(meridian.size_at(wide))
     if not elements:
         elements = _elements(drop, pattern, wide, reach, many)
-    fine = _fine_part(reach, elements) if many else FINE
+    fine = fine_part(reach, elements) if many else FINE
+    spot, size = pattern.spot(drop.pressure), wide / (fine * elements)
+    narrow = many and spot <= NARROW * WIDER * size and size * PER_SPACING[0] <= pattern.spacing
     stretch = Stretch(fine, reach / fine) if reach < fine else Stretch()
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
@@ -143,7 +92,7 @@ def whole_skin(
         points[:, 2] += length if start == "above" else 0.0
     elif many:
         points[:, 2] -= 0.5 * pattern.sag(drop.pressure)
-    return Skin(space, points, directions, drop.pressure, many)
+    return Skin(space, points, directions, drop.pressure, many, narrow and not pattern.stiffness)
 
 
 def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
@@ -169,7 +118,7 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
     across = wide / reach * min(reach / FINE, 1.0)  # length of the even elements, by their number
     needed = PER_RADIUS * across / length
     if many and not stiffness:
-        needed = _graded(reach, PER_SPOT * wide / length)
+        needed = graded(reach, wide / element_size(pattern, drop.pressure))
     if stiffness:
         sunk = (drop.pressure + 2.0 / length) / stiffness / length
         needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
@@ -180,30 +129,6 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
             "larger asperities, or discretization.elements"
         )
     return max(FEWEST, int(np.ceil(needed)))
-
-
-PARTS = np.linspace(FINE, 0.97, 221)
-"""Parts of the elements under the foot to choose from."""
-
-
-def _growth(reach: float, elements: Array | float) -> Array:
-    """(parts,) largest growth from element to element beside a foot that takes each of the parts:
-    of the slope ``s + A (1 - cos(pi t))`` of :class:`~iga_membrane.surface.closed.Stretch`."""
-    s = np.minimum(reach / PARTS, 1.0)
-    a = (1.0 - s) / (1.0 - PARTS)
-    return np.asarray(np.pi * a / np.sqrt(s * s + 2.0 * s * a) / ((1.0 - PARTS) * elements))
-
-
-def _fine_part(reach: float, elements: int) -> float:
-    """Largest part of the elements under the foot that the others can follow."""
-    gentle = np.flatnonzero(_growth(reach, elements) <= GROWTH)
-    return float(PARTS[gentle[-1] if len(gentle) else 0])
-
-
-def _graded(reach: float, under: float) -> float:
-    """Elements from the middle to a side with as many under the foot, the others growing."""
-    gentle = np.flatnonzero(_growth(reach, under / PARTS) <= GROWTH)
-    return float(under / PARTS[gentle[-1] if len(gentle) else 0])
 
 
 def _meridian(drop: FlatDrop, wide: float) -> Meridian:
@@ -244,13 +169,3 @@ def smallest_model(solid: Solid, reach: float, lateral: tuple[float, float]) -> 
     if lateral[0] or not mirrored(sample * [-1.0, 1.0, 1.0]):
         return "half"
     return "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"
-
-
-def cell_of(solid: Solid) -> float:
-    """Area of the substrate per asperity; infinite without asperities."""
-    if isinstance(solid, SphereLattice):
-        return solid.area_per_sphere
-    if isinstance(solid, Spheres):
-        place = np.asarray(solid.centers)[:, :2]
-        return float(np.prod(np.ptp(place, axis=0)) / len(place)) or np.inf
-    return float(np.inf)

@@ -25,8 +25,9 @@ from ..terms import (
     TrimmedContactLine,
 )
 from ..terms.term import AnySolid
-from .asperities import Pattern, ball, cell_of, smallest_model, whole_skin
+from .asperities import ball, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
 
 
@@ -150,7 +151,9 @@ def _on_an_area(parts: Question) -> Foot:
     # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
     law = parts.law
-    if skin.many and law.penalty is None:
+    if skin.narrow:
+        law = replace(law, point_supports=True)
+    elif skin.many and law.penalty is None:
         law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
     foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
     if least == 180.0:

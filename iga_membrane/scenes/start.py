@@ -129,6 +129,8 @@ def flat_drop(bond: float, volume: float) -> FlatDrop:
     from scipy.integrate import solve_ivp
     from scipy.optimize import brentq
 
+    top = 1.0
+
     def rates(s: float, state: Array) -> list[float]:
         r, depth, turn, _ = state
         bend = top + bond * depth - np.sin(turn) / r
@@ -151,7 +153,6 @@ def flat_drop(bond: float, volume: float) -> FlatDrop:
     def missing(log: float) -> float:
         return float(np.log(path(log).y[3, -1] / volume))
 
-    top = 1.0
     ball = float(np.log(2.0 * (4.0 * np.pi / (3.0 * volume)) ** (1.0 / 3.0)))
     low = ball - 1.0
     while missing(low) < 0.0:

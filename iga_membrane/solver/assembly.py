@@ -71,10 +71,10 @@ class Assembly(Functional):
         if self.contact is not None:
             near, length = self.contact.near(surface.points), self.contact.length
         elif self.trim is not None:
-            near, length = self.trim.near(surface.points), self.trim.length
+            near, length = self.table.functions[self.trim.near(surface.points)], self.trim.length
         else:
             return 0.0
-        moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)
+        moved = np.linalg.norm(displacement[near], axis=-1)
         return float(moved.max(initial=0.0)) / length
 
     def relaxed(self, surface: Surface, motion: Motion) -> Surface:
@@ -101,7 +101,7 @@ class Assembly(Functional):
         """Whether the multipliers of contact hold the gap; they are updated when the last step
         ``near`` the solid (over the contact length) is small against what the contact still gives.
         """
-        if self.contact is None:
+        if self.contact is None or not self.contact.exact:
             return True
         touch = self.contact.touch(surface.points)
         if near * self.contact.length <= STEADY * self.contact.give(touch):

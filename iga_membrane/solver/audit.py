@@ -32,6 +32,7 @@ from .assembly import TINY
 from .contact import ContactSet
 from .contact_line import ContactLine, contact_line, vertical_forces
 from .measures import sphere_of
+from .point_supports import PointSupports
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,9 @@ def audit(
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
     if contact is not None:
-        depth, place = _depth(surface, contact, points)
+        depth, place = 0.0, None
+        if not isinstance(contact, PointSupports):
+            depth, place = _depth(surface, contact, points)
         weight = body.gradient[2] * inside
         carried = -sector.copies * float(push[..., 2].sum())
         if scene.line_inside is not None:

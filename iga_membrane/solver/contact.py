@@ -36,6 +36,10 @@ LIFTS = 10
 """How often the contact points are lifted at most."""
 RANGE = 1.0
 """Range of adhesion over the gap at which a membrane has left the solid after one element."""
+ACROSS = 4
+"""Elements across a wet asperity that resolve it."""
+POINTS = 6
+"""Quadrature points in contact on every wet asperity, in the mean, that resolve its spot."""
 SETTLED = 1e-6
 """Gap of an active point over the contact length that counts as none."""
 
@@ -162,12 +166,34 @@ class ContactSet:
         rows, at = table.values[near], touch.at
         d = directions[table.functions[near]]
         bent = self.area[near] * (touch.traction - touch.pull)[near] * at.bend[near]
-        soft = np.broadcast_to(self.delta, self.area.shape)[near]
-        stiff = self.area[near] * ((touch.traction[near] > 0) / soft + touch.rise[near])
+        stiff = (self.area * self.stiffness(touch))[near]
         u = rows * (at.normal[near] @ d.transpose(0, 2, 1))
         blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
         blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))
         return near, blocks
+
+    def stiffness(self, touch: Touch) -> Array:
+        """(elements, points) derivative of the traction by the depth."""
+        return np.asarray((touch.traction > 0) / self.delta + touch.rise)
+
+    def objection(self, touch: Touch) -> str | None:
+        """Why the mesh is too coarse for this law, or None."""
+        across = self.across(touch)
+        if across < ACROSS:
+            return (
+                f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
+                "discretization.elements"
+            )
+        held = touch.traction > 0.0
+        if self.exact or not (touch.at.bend[held] > 0.0).any():
+            return None
+        each = held.sum() / len(np.unique(touch.at.which[held]))
+        if each < POINTS:
+            return (
+                f"a wet spot has {each:.1f} quadrature points in the mean, {POINTS} are needed: "
+                "take more discretization.elements, or fewer, for point supports"
+            )
+        return None
 
     def across(self, touch: Touch) -> float:
         """Fewest elements across the smallest sphere, where the membrane lies on one."""
@@ -181,9 +207,10 @@ class ContactSet:
         """Depth by which the stiffest contact would give way without multipliers."""
         return float((self.delta * touch.traction).max(initial=0.0))
 
-    def near(self, points: Array) -> Array:
-        """(elements,) whether an element is near the solid."""
-        return np.asarray((self.touch(points).at.gap < 2.0 * self.length).any(axis=1))
+    def near(self, points: Array) -> Index:
+        """(k, local) functions of the elements near the solid."""
+        close = (self.touch(points).at.gap < 2.0 * self.length).any(axis=1)
+        return self.table.functions[close]
 
     def tighten(self, touch: Touch, points: Array) -> None:
         """Take the tractions as multipliers and reduce ``delta``; lift points that dip too deep."""

@@ -127,10 +127,6 @@ def defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
     return None
 
 
-ACROSS = 4
-"""Elements across a wet asperity that resolve it."""
-
-
 def contact_objection(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[Status, str | None, str] | None:
@@ -145,14 +141,9 @@ def contact_objection(
             "the liquid touches the plane under the asperities",
         )
     contact = assembly.contact
-    across = np.inf if contact is None else contact.across(contact.touch(surface.points))
-    if across < ACROSS:
-        return (
-            Status.UNDERRESOLVED,
-            None,
-            f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
-            "discretization.elements",
-        )
+    coarse = None if contact is None else contact.objection(contact.touch(surface.points))
+    if coarse is not None:
+        return Status.UNDERRESOLVED, None, coarse
     if lines:
         off = np.cos(np.radians(feet.angles)) - np.cos(np.radians(_young(scene, feet)))
         worst = int(np.abs(off).argmax())

@@ -71,9 +71,7 @@ class Basis:
     def alike(self) -> bool:
         """Whether all elements have the same functions."""
         rounding = 1e-9 * self.sizes[0]
-        return bool(
-            (self.operators == self.operators[0]).all() and np.ptp(self.sizes) <= rounding
-        )
+        return bool((self.operators == self.operators[0]).all() and np.ptp(self.sizes) <= rounding)
 
     def on_elements(self, u: Array, derivative: int = 0) -> Array:
         """Values at the same local points of every element: (m, len(u), p + 1)."""
