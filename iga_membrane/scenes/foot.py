@@ -148,6 +148,9 @@ def _on_an_area(parts: Question) -> Foot:
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
     # contact lines lie in the part of the membrane that takes no part in shifts
     above = 0.0 if lies else 2.0 * largest_radius(local)
+    if skin.narrow:
+        # where the membrane meets point supports it moves vertically only
+        above = float(skin.points[skin.directions[:, 2] == -1.0, 2].max())
     # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
     law = parts.law

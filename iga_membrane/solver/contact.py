@@ -22,6 +22,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..solids import Nearest, Plane, Solid
 from ..splines import Space, Table
+from ..surface.surface import Surface
 
 SOFT = 0.025
 """First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
@@ -139,6 +140,9 @@ class ContactSet:
     def gained(self, points: Array) -> float:
         """Energy of adhesion that is gained (one sector)."""
         return float(self.adhesion * (self.touch(points).gain * self.area).sum())
+
+    def follow(self, surface: Surface) -> None:
+        """Take note of a mesh that has moved sideways; gaps are measured wherever it is."""
 
     def push(self, touch: Touch) -> Array:
         """(elements, points, 3) forces of the solid on the membrane."""

@@ -15,6 +15,7 @@ from ..terms import BodyDensity
 from ..terms.trimmed import line_density, wet_integral
 from ..terms.variations import element_points
 from .assembly import Assembly
+from .point_supports import PointSupports
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,3 +186,13 @@ def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     if trim is not None:
         close &= ~np.isin(which, trim.on_line(surface.points).at.which)
     return int(behind.ravel()[nearest[close]].sum())
+
+
+def unsupported(assembly: Assembly, surface: Surface) -> int:
+    """How many spheres that are no point supports a membrane on point supports has met."""
+    contact = assembly.contact
+    if not isinstance(contact, PointSupports):
+        return 0
+    x = assembly.table.values @ surface.points[assembly.table.functions]
+    at = contact.solid.nearest(x)
+    return len(np.setdiff1d(at.which[at.gap < 0.0], contact.which))

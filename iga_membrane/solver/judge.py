@@ -14,7 +14,7 @@ from ..terms import Centroid, Contact
 from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line
-from .footing import Footing, engulfed, footing
+from .footing import Footing, engulfed, footing, unsupported
 from .measures import sphere_of
 from .stability import Stability
 from .status import Status
@@ -144,6 +144,14 @@ def contact_objection(
     coarse = None if contact is None else contact.objection(contact.touch(surface.points))
     if coarse is not None:
         return Status.UNDERRESOLVED, None, coarse
+    beside = unsupported(assembly, surface)
+    if beside:
+        return (
+            Status.UNDERRESOLVED,
+            None,
+            f"the membrane has come down on {beside} asperities beside its finely meshed foot, "
+            "which are no supports there: hold the droplet (droplet.hold) or start nearer to it",
+        )
     if lines:
         off = np.cos(np.radians(feet.angles)) - np.cos(np.radians(_young(scene, feet)))
         worst = int(np.abs(off).argmax())

@@ -192,7 +192,7 @@ class Bordered:
 
     def last(self, count: int) -> Array:
         """(count, count) Hessian of the last unknowns when all the others follow them."""
-        unit = np.eye(self._n)[:, self._n - count :]
+        unit = np.eye(self._n, count, count - self._n)
         zero = np.zeros(self._m)
         follow = [self.solve(column, zero)[0][self._n - count :] for column in unit.T]
         return np.linalg.inv(0.5 * (np.array(follow) + np.array(follow).T))

@@ -13,7 +13,7 @@ from ..surface.surface import Surface
 from ..terms import AreaTerm, Contact, TrimmedContactLine
 from ..terms import variations as vary
 from .contact import ContactSet
-from .point_supports import PointSupports, supports_of
+from .point_supports import PointSupports
 from .trim import Trim
 
 
@@ -41,8 +41,7 @@ def contact_of(scene: Scene, surface: Surface, points: tuple[int, int]) -> Conta
     elements, _ = sector_elements(surface.space, scene.sector)
     if term.point_supports and isinstance(term.solid, (SphereLattice, Spheres)):
         tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
-        supports = supports_of(scene, term.solid, surface)
-        return PointSupports(term.solid, supports, tension, surface.space, elements)
+        return PointSupports(scene, term.solid, surface, tension, elements)
     points = (1, 1) if term.penalty is None else points
     table = sector_table(surface.space, scene.sector, points)
     area = vary.element_points(table, surface.points).area * table.weights

@@ -21,9 +21,9 @@ import numpy as np
 from ..arrays import Array, Index
 from ..errors import GeometryError
 from ..scenes.scene import Scene
-from ..solids import Solid
-from ..solids.nearest import Asperities
-from ..splines import Space, Table
+from ..solids import SphereLattice, Spheres
+from ..solids.nearest import Asperities, Nearest
+from ..splines import Table
 from ..splines.point_load import effective_radius
 from ..surface.sector import mirrors
 from ..surface.surface import Surface
@@ -45,15 +45,18 @@ class Supports:
     Attributes
     ----------
     table : functions at the axes, an "element" with one point for each.
-    share : (k,) part of each that belongs to the sector.
+    which : (k,) numbers of the asperities; share : (k,) part of each that belongs to the sector.
     top, radius, reach : (k,) height of the asperity's top, its radius, effective radius b.
+    spacing : of a square lattice with as many asperities.
     """
 
     table: Table
+    which: Index
     share: Array
     top: Array
     radius: Array
     reach: Array
+    spacing: float
 
 
 class PointSupports(ContactSet):
@@ -61,17 +64,33 @@ class PointSupports(ContactSet):
 
     Parameters
     ----------
-    supports : where they are.
+    scene : whose membrane it is.
+    solid : in the scene's scale.
+    start : surface whose mesh meets the asperities as long as its foot moves vertically only.
     tension : of the membrane.
+    elements : of the sector.
     """
 
     def __init__(
-        self, solid: Solid, supports: Supports, tension: float, space: Space, elements: Index
+        self, scene: Scene, solid: Asperities, start: Surface, tension: float, elements: Index
     ) -> None:
+        self._scene, self._tension = scene, tension
+        supports = supports_of(scene, solid, start)
         area = supports.share[:, None]
-        super().__init__(solid, supports.table, area, 1.0, np.inf, 0.0, space, elements)
+        super().__init__(solid, supports.table, area, 1.0, np.inf, 0.0, start.space, elements)
+        self._take(supports)
+
+    def follow(self, surface: Surface) -> None:
+        """Find the asperities anew in a mesh that has moved sideways."""
+        assert isinstance(self.solid, (SphereLattice, Spheres))
+        self._take(supports_of(self._scene, self.solid, surface))
+
+    def _take(self, supports: Supports) -> None:
+        self.table, self.area = supports.table, supports.share[:, None]
+        self.length = supports.spacing
         self._reach, self._radius = supports.reach[:, None], supports.radius[:, None]
-        self._tension, self._top = tension, supports.top[:, None]
+        self._which, self._top = supports.which[:, None], supports.top[:, None]
+        tension = self._tension
         # force of a spot of the effective radius
         self._unit = 2.0 * np.pi * tension * self._reach**2 / self._radius
 
@@ -81,7 +100,9 @@ class PointSupports(ContactSet):
         depth = self._top - x[..., 2]
         force = self._unit * spot(2.0 * self._radius * depth / self._reach**2)
         none = np.zeros_like(depth)
-        return Touch(self.solid.nearest(x), force, none, none, none)
+        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape)
+        at = Nearest(-depth, up, none, self._which)
+        return Touch(at, force, none, none, none)
 
     def energy(self, touch: Touch) -> float:
         """Work done on the springs."""
@@ -96,12 +117,17 @@ class PointSupports(ContactSet):
         phi = np.clip(touch.traction / self._unit, 1e-300, LARGEST)
         return np.asarray(-4.0 * np.pi * self._tension / np.log(phi) * (touch.traction > 0.0))
 
+    @property
+    def which(self) -> Index:
+        """(k,) numbers of the supports."""
+        return self._which[:, 0]
+
     def near(self, points: Array) -> Index:
         """Functions at all axes."""
         return self.table.functions
 
     def objection(self, touch: Touch) -> str | None:
-        """Why the mesh is too fine for this law, or None."""
+        """Why the mesh does not do for this law, or None."""
         phi = float((touch.traction / self._unit).max(initial=0.0))
         if phi <= WIDEST**2:
             return None
@@ -135,34 +161,49 @@ def supports_of(scene: Scene, solid: Asperities, surface: Surface) -> Supports:
     GeometryError
         If the axis of one of them is not found in the mesh.
     """
-    space, images = surface.space, mirrors(scene.sector)
+    from scipy.spatial import cKDTree
+
+    space = surface.space
     assert scene.directions is not None
     upright = np.abs(scene.directions[:, :2]).max(axis=1) < 1e-12
     zone = np.flatnonzero(np.asarray(upright)[space.functions].all(axis=1))
     middle = space.table(1, zone)
-    x = (middle.values @ surface.points[middle.functions])[:, 0, :2]
+    x, *edges = (rows[:, 0, :2] for rows in middle.derivatives(surface.points))
+    areas = np.abs(_turned(*edges)) * middle.weights[:, 0]
     within = solid.within(float(np.linalg.norm(x, axis=1).max()))
     centers = solid.center_of(within)
-    mine = _in_sector(centers, scene.sector.model, 1e-9 * solid.scale)
-    within, centers = within[mine], centers[mine]
-    xi = _located(surface, x, middle.parameters[:, 0], centers[:, :2], 1e-12 * surface.size)
+    # an element is less than twice as long as its area says
+    away, nearest = cKDTree(x).query(centers[:, :2])
+    mine = away <= 2.0 * np.sqrt(areas[nearest])
+    mine &= _in_sector(centers, scene.sector.model, 1e-9 * solid.scale)
+    within, centers, nearest = within[mine], centers[mine], nearest[mine]
+    xi = _located(surface, middle.parameters[nearest, 0], centers[:, :2], 1e-12 * surface.size)
     one, two = space.bases
     (e1, u), (e2, v) = one.locate(xi[:, 0]), two.locate(xi[:, 1])
     inside = np.isin(e1 * two.elements + e2, zone)
     within, centers, xi = within[inside], centers[inside], xi[inside]
     place = np.stack([u, v], axis=-1)[inside]
     functions, rows = space.at(xi, 1)
-    a1, a2 = (np.einsum("ka,kai->ki", rows[d], surface.points[functions]) for d in ((1, 0), (0, 1)))
-    size = np.abs(a1[:, 0] * a2[:, 1] - a1[:, 1] * a2[:, 0]) * one.sizes[0] * two.sizes[0]
-    radius = solid.radius_of(within)
-    images_of = np.stack([centers @ m for m in images], axis=1)
-    same = np.linalg.norm(images_of - centers[:, None], axis=-1) <= 1e-9 * solid.scale
-    plain = np.ones((len(xi), 1))
     table = Table(
-        functions, rows[0, 0][:, None], rows[1, 0][:, None], rows[0, 1][:, None], plain, xi[:, None]
-    )
-    reach = np.sqrt(size) * effective_radius(space.degree, place)
-    return Supports(table, 1.0 / same.sum(axis=1), centers[:, 2] + radius, radius, reach)
+        functions, rows[0, 0][:, None], rows[1, 0][:, None], rows[0, 1][:, None],
+        np.ones((len(xi), 1)), xi[:, None],
+    )  # fmt: skip
+    size = np.abs(_turned(*(a[:, 0, :2] for a in table.derivatives(surface.points)[1:])))
+    size *= one.sizes[0] * two.sizes[0]
+    radius = solid.radius_of(within)
+    images = np.stack([centers @ m for m in mirrors(scene.sector)], axis=1)
+    same = np.linalg.norm(images - centers[:, None], axis=-1) <= 1e-9 * solid.scale
+    share = 1.0 / same.sum(axis=1)
+    return Supports(
+        table, within, share, centers[:, 2] + radius, radius,
+        np.sqrt(size) * effective_radius(space.degree, place),
+        float(np.sqrt(areas.sum() / images.shape[1] / max(1.0, share.sum()))),
+    )  # fmt: skip
+
+
+def _turned(a: Array, b: Array) -> Array:
+    """Vector product of vectors in the plane."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _in_sector(centers: Array, model: str, rounding: float) -> Array:
@@ -178,19 +219,14 @@ def _in_sector(centers: Array, model: str, rounding: float) -> Array:
     return inside
 
 
-def _located(
-    surface: Surface, x: Array, parameters: Array, wanted: Array, tolerance: float
-) -> Array:
+def _located(surface: Surface, xi: Array, wanted: Array, tolerance: float) -> Array:
     """(k, 2) parameters at which a surface passes vertical axes, by Newton's method.
 
     Parameters
     ----------
-    x, parameters : (n, 2) known places and their parameters to start from.
+    xi : (k, 2) to start from.
     wanted : (k, 2) the axes.
     """
-    from scipy.spatial import cKDTree
-
-    xi = parameters[cKDTree(x).query(wanted)[1]].copy()
     for _ in range(NEWTON):
         k = surface.at(xi, 1)
         missing = wanted - k.position[..., :2]
