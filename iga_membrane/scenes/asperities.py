@@ -15,7 +15,17 @@ from ..solids import Solid
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from .liquid import Model
-from .pattern import FINE, NARROW, PER_SPACING, WIDER, Pattern, element_size, fine_part, graded
+from .pattern import (
+    FINE,
+    LEAST,
+    NARROW,
+    PER_SPACING,
+    WIDER,
+    Pattern,
+    element_size,
+    fine_part,
+    graded,
+)
 from .start import FlatDrop, flat_drop, rounded
 
 STARTS = ("flat", "above", "touching")
@@ -118,7 +128,7 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
     across = wide / reach * min(reach / FINE, 1.0)  # length of the even elements, by their number
     needed = PER_RADIUS * across / length
     if many and not stiffness:
-        needed = graded(reach, wide / element_size(pattern, drop.pressure))
+        needed = graded(reach, wide / element_size(pattern, drop.pressure, wide / (FINE * LEAST)))
     if stiffness:
         sunk = (drop.pressure + 2.0 / length) / stiffness / length
         needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
@@ -128,7 +138,7 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
             f"elements from the middle to a side, more than {MOST}: not available yet; give "
             "larger asperities, or discretization.elements"
         )
-    return max(FEWEST, int(np.ceil(needed)))
+    return max(LEAST if many else FEWEST, int(np.ceil(needed)))
 
 
 def _meridian(drop: FlatDrop, wide: float) -> Meridian:

@@ -23,11 +23,13 @@ pressed on them, and contact is a hard penalty at all quadrature points."""
 PER_SPOT = 2.2, 1.25
 """Elements along the radius of the smallest of many asperities, and along that of its wet spot, by
 default."""
+LEAST = 36
+"""Elements from the middle to a side at least, for a droplet on point supports."""
 PER_SPACING = 3.0, 4.0
 """Elements from one point support to the next: at least, and as many as keep spots narrow."""
 NARROW, WIDER = 0.25, 1.5
-"""Radius of a spot over the element's size that the mesh of point supports is made for, and by how
-much wider it may turn out."""
+"""Radius of a spot over the element's size that the mesh of point supports is made for, and how
+much wider spots on the coarsest such mesh may be."""
 SUNK = 3e-4
 """Depth over radius to which that penalty lets the membrane sink."""
 GROWTH = 0.15
@@ -79,13 +81,14 @@ class Pattern:
         return (pressure + 2.0 / self.length) / (SUNK * self.length)
 
 
-def element_size(pattern: Pattern, pressure: float) -> float:
+def element_size(pattern: Pattern, pressure: float, largest: float) -> float:
     """Under many asperities: so coarse that each is a point support, or, where wet spots are too
-    wide for that, so fine that they are resolved."""
+    wide for that, so fine that they are resolved; ``largest`` : for the droplet itself."""
     spot, spacing = pattern.spot(pressure), pattern.spacing
     coarsest, finest = (spacing / count for count in PER_SPACING)
-    if spot <= 1.15 * NARROW * coarsest:
-        return float(np.clip(spot / NARROW, finest, coarsest))
+    coarsest = min(coarsest, largest)
+    if spot <= WIDER * NARROW * coarsest:
+        return float(np.clip(spot / NARROW, min(finest, coarsest), coarsest))
     return min(pattern.length / PER_SPOT[0], spot / PER_SPOT[1])
 
 

@@ -116,6 +116,11 @@ class ContactSet:
         self.settled = not self.exact
         self.rounds = 0
 
+    @property
+    def law(self) -> str:
+        """In a word."""
+        return "multipliers" if self.exact else "penalty"
+
     def begin(self) -> None:
         """Soft again and without lifts, from the multipliers at hand."""
         self.rounds = 0

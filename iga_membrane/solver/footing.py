@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..scenes.scene import Scene
-from ..surface.sector import mirrors
+from ..surface.sector import in_sector, mirrors
 from ..surface.surface import Surface
 from ..terms import BodyDensity
 from ..terms.trimmed import line_density, wet_integral
@@ -171,7 +171,7 @@ def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     are inside the membrane, of those that have none.
 
     Seen from its nearest point of the membrane, a centre outside the liquid lies on the side of the
-    normal.
+    normal; for centres in the sector that point is there, too.
     """
     at = element_points(assembly.table, surface.points)
     trim, contact = assembly.trim, assembly.contact
@@ -185,7 +185,9 @@ def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     close = (which >= 0) & (beside.gap.ravel()[nearest] < 2.0 * on.length)
     if trim is not None:
         close &= ~np.isin(which, trim.on_line(surface.points).at.which)
-    return int(behind.ravel()[nearest[close]].sum())
+    wrong = which[close][behind.ravel()[nearest[close]]]
+    centers = np.asarray(on.solid.center_of(wrong)).reshape(-1, 3)
+    return int(in_sector(surface.space, scene.sector, centers, 1e-9 * on.length).sum())
 
 
 def unsupported(assembly: Assembly, surface: Surface) -> int:

@@ -25,14 +25,14 @@ from ..solids import SphereLattice, Spheres
 from ..solids.nearest import Asperities, Nearest
 from ..splines import Table
 from ..splines.point_load import effective_radius
-from ..surface.sector import mirrors
+from ..surface.sector import in_sector, mirrors
 from ..surface.surface import Surface
 from .contact import ContactSet, Touch
 
 LARGEST = 0.75
 """``phi`` up to which the spring stiffens; beyond, it goes on with the same stiffness."""
-WIDEST = 1.5
-"""Radius of a spot over the effective radius up to which sags are right to 3 percent
+WIDEST = 2.0
+"""Radius of a spot over the effective radius up to which sags are right to 5 percent
 (docs/results/lotus.md)."""
 NEWTON = 30
 """Steps at most that find where in the mesh an axis is."""
@@ -79,6 +79,11 @@ class PointSupports(ContactSet):
         area = supports.share[:, None]
         super().__init__(solid, supports.table, area, 1.0, np.inf, 0.0, start.space, elements)
         self._take(supports)
+
+    @property
+    def law(self) -> str:
+        """In a word."""
+        return "point supports"
 
     def follow(self, surface: Surface) -> None:
         """Find the asperities anew in a mesh that has moved sideways."""
@@ -175,7 +180,7 @@ def supports_of(scene: Scene, solid: Asperities, surface: Surface) -> Supports:
     # an element is less than twice as long as its area says
     away, nearest = cKDTree(x).query(centers[:, :2])
     mine = away <= 2.0 * np.sqrt(areas[nearest])
-    mine &= _in_sector(centers, scene.sector.model, 1e-9 * solid.scale)
+    mine &= in_sector(space, scene.sector, centers, 1e-9 * solid.scale)
     within, centers, nearest = within[mine], centers[mine], nearest[mine]
     xi = _located(surface, middle.parameters[nearest, 0], centers[:, :2], 1e-12 * surface.size)
     one, two = space.bases
@@ -204,19 +209,6 @@ def supports_of(scene: Scene, solid: Asperities, surface: Surface) -> Supports:
 def _turned(a: Array, b: Array) -> Array:
     """Vector product of vectors in the plane."""
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
-
-
-def _in_sector(centers: Array, model: str, rounding: float) -> Array:
-    """Whether places lie in the sector that is computed, or on its edge."""
-    x, y = centers[:, 0], centers[:, 1]
-    inside = np.ones(len(x), bool)
-    if model != "full":
-        inside &= y >= -rounding
-    if model in ("quarter", "eighth"):
-        inside &= x >= -rounding
-    if model == "eighth":
-        inside &= y >= x - rounding
-    return inside
 
 
 def _located(surface: Surface, xi: Array, wanted: Array, tolerance: float) -> Array:
