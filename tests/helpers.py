@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 
 import iga_membrane as iga
@@ -23,6 +25,28 @@ def droplet(contact_angle, bond=0.0, *, quadrature=None, hold="none", **mesh):
 
 def solved(contact_angle, bond=0.0, options=None, **mesh):
     return iga.solve(droplet(contact_angle, bond, **mesh), options)
+
+
+def droplet_file(contact_angle, bond=0.0, more="", **mesh):
+    """Text of a scene file (TOML) with the drop of :func:`droplet`; ``more`` stands at its end."""
+    lines = [f"{key} = {json.dumps(value)}" for key, value in mesh.items()]
+    return "\n".join([
+        'scene = "sessile_droplet"',
+        "[liquid]",
+        f"volume = {UNIT_VOLUME!r}",
+        "[gravity]",
+        f"acceleration = {bond!r}",
+        "[substrate]",
+        f"contact_angle = {contact_angle!r}",
+        "[discretization]",
+        *lines,
+        more,
+    ])  # fmt: skip
+
+
+def path_file(parameter, values):
+    """Text of the table of a scene file that walks a path."""
+    return f'[[path]]\nparameter = "{parameter}"\nvalues = {values}\n'
 
 
 def worst(measures, exact, names=MEASURES):

@@ -24,6 +24,26 @@ def remainder_slopes(value, gradient, curvature):
     return _slope(first, floor), _slope(second, floor)
 
 
+def lagrangian(assembly, surface, multipliers, motion, direction):
+    """Step -> Lagrangian of a state moved along a direction of the unknowns."""
+
+    def value(step):
+        moved = surface.moved(surface.points + motion.displacement(step * direction))
+        energies = assembly.energies(moved)
+        return energies.total - multipliers @ energies.constraints
+
+    return value
+
+
+def lagrangian_slopes(assembly, surface, multipliers, motion, direction):
+    """Slopes of the remainders of an assembly's Lagrangian with its own gradient and Hessian."""
+    system = assembly.system(surface, motion.directions, multipliers)
+    gradient = system.residual(multipliers) @ direction
+    curvature = direction @ (system.matrix @ direction)
+    value = lagrangian(assembly, surface, multipliers, motion, direction)
+    return remainder_slopes(value, gradient, curvature)
+
+
 def _slope(errors, floor):
     """Median rate between the last halvings at which the remainder is above rounding."""
     keep = errors[errors > floor][-4:]

@@ -7,22 +7,12 @@ import sys
 
 import numpy as np
 import pytest
+from helpers import droplet_file
 
 import iga_membrane as iga
 from iga_membrane.cli import main
 
-SCENE = """
-scene = "sessile_droplet"
-[liquid]
-volume = 4.1887902047863905
-[gravity]
-acceleration = 1.0
-[substrate]
-contact_angle = 150.0
-[discretization]
-degree = 3
-elements = 8
-"""
+SCENE = droplet_file(150.0, 1.0, degree=3, elements=8)
 
 
 @pytest.fixture

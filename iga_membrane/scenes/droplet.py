@@ -23,6 +23,7 @@ from ..terms import (
     Term,
     Volume,
 )
+from .beside import check_particles
 from .foot import (
     CONTACT_LINES,
     PREDICTABLE,
@@ -34,7 +35,7 @@ from .foot import (
     with_rim,
 )
 from .liquid import Discretization, Liquid, with_defaults
-from .scene import FreeEdge, Ramp, Scene
+from .scene import FreeEdge, Ramp, Scene, described_particle
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
 HOLDS = ("none", "x", "xy", "xyz")
@@ -52,6 +53,7 @@ def sessile_droplet(
     penalty: float | None = None,
     penetration_tolerance: float = 1e-2,
     contact_line: str = "auto",
+    particles: Sequence[Sphere] = (),
     membrane: WholeMembrane | None = None,
 ) -> Scene:
     """Droplet of a volume on a plane, on top of a sphere, or on asperities.
@@ -78,6 +80,8 @@ def sessile_droplet(
     contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
         through the sphere or the asperities; "adhesion", it lies on asperities that attract it, for
         angles near 180 degrees; "auto" chooses.
+    particles : fixed spheres on its surface, with contact angles and densities; the membrane passes
+        through them.
     membrane : the paper's formulation, with its own penalty, instead of a contact line as the
         membrane's edge; on a plane, below 180 degrees.
 
@@ -113,11 +117,13 @@ def sessile_droplet(
         None if penalty is None else penalty * liquid.surface_tension / length**2,
         penetration_tolerance,
     )
-    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line)
+    grains = check_particles(particles)
+    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, grains)
     built = foot_of(parts)
     sector = built.sector
     if isinstance(substrate, Plane):
-        terms += [Centroid(axis) for axis in {"full": "xy", "half": "x"}.get(sector.model, "")]
+        free = {"full": "xy", "half": "x"}.get(sector.model, "")
+        terms += [Centroid(axis) for axis in free if not grains or axis in hold]
     pull = float(np.linalg.norm(acceleration))
 
     def at(size: float) -> Scene:
@@ -129,13 +135,14 @@ def sessile_droplet(
             discretization=replace(asked, model=sector.model),
             hold=hold,
             contact_line=contact_line,
+            particles=grains,
         )
 
     # at 180 degrees on a plane there is nothing to start from without gravity
     has_way = isinstance(substrate, Sphere) or (
         isinstance(substrate, Plane) and substrate.contact_angle < 180.0
     )
-    described = _describe(substrate, volume, liquid, acceleration, hold)
+    described = _describe(substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
     if bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
@@ -148,6 +155,9 @@ def sessile_droplet(
         directions=built.directions,
         ramp=ramp,
         substrate=substrate,
+        particles=grains,
+        acceleration=vector("gravity", acceleration),
+        liquid_density=liquid.density,
         hold="" if hold == "none" else hold,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
@@ -155,6 +165,9 @@ def sessile_droplet(
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
+    if built.predictor and isinstance(substrate, Plane):
+        held = [t for t in terms if not isinstance(t, Centroid)]
+        return replace(scene, predictor=replace(scene, terms=[*held, *built.predictor], ramp=None))
     if built.predictor:
         return _with_start(scene, terms, built)
     if not built.tangent:
@@ -245,6 +258,7 @@ def _describe(
     liquid: Liquid,
     acceleration: Array,
     hold: str,
+    particles: Sequence[Sphere],
 ) -> dict[str, Any]:
     """The scene by the names of the scene file."""
     size = float(np.linalg.norm(acceleration))
@@ -258,6 +272,7 @@ def _describe(
         },
         "gravity": {"acceleration": size, "direction": [float(d) for d in direction]},
         "substrate": _describe_substrate(substrate),
+        "particle": [described_particle(each) for each in particles],
         "droplet": {"hold": hold},
     }
 

@@ -16,6 +16,7 @@ from ..surface.ring import axisymmetric, drop_space
 from ..surface.supports import Fixed, Sector, Shift, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
+    Centroid,
     Contact,
     LineTerm,
     PlaneContactLine,
@@ -26,6 +27,7 @@ from ..terms import (
 )
 from ..terms.term import AnySolid
 from .asperities import ball, smallest_model, whole_skin
+from .beside import crowd, mirrored_model, patch_round, towards_liquid
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
 from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
@@ -43,6 +45,7 @@ class Question:
     liquid: Liquid
     law: Contact
     contact_line: str
+    particles: tuple[Sphere, ...] = ()
 
     @property
     def down(self) -> float:
@@ -59,7 +62,7 @@ class Foot:
     mesh: Mesh
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
     predictor: Sequence[Term] = ()
@@ -71,6 +74,8 @@ CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
+    if parts.particles and isinstance(solid, Plane) and solid.contact_angle < 180.0:
+        return _with_particles(parts)
     refused: tuple[str, ...] = ("trimmed", "adhesion")
     if isinstance(solid, (SphereLattice, Spheres)):
         refused = ("conforming",)
@@ -110,6 +115,37 @@ def _on_a_line(parts: Question) -> Foot:
         start = parts.start
         _check_start(start, mesh, substrate)
     return Foot(start, sector, mesh, [foot.line], [foot.support], grading)
+
+
+def _with_particles(parts: Question) -> Foot:
+    """A drop on a plane whose membrane passes through particles."""
+    scale, mesh = parts.scale, parts.asked.mesh(degree=3, elements=-1)
+    assert isinstance(parts.substrate, Plane)
+    if parts.law.penalty is not None or parts.start is not None or mesh.space != "bspline":
+        raise SceneError(
+            "particle: a droplet with particles needs the scene's own start, no penalty and space "
+            '"bspline"'
+        )
+    local = tuple(scale.local_sphere(each) for each in parts.particles)
+    model = mirrored_model(local, _sector(mesh, parts.bond).model)
+    if mesh.model is not None and MODELS.index(mesh.model) > MODELS.index(model):
+        raise SceneError(
+            f'discretization.model = "{mesh.model}": the particles have no such mirror planes; '
+            f'"{model}" is the smallest model here'
+        )
+    sector = Sector(mesh.model or model)
+    rest = _foot(parts.substrate, parts.liquid, scale.length, parts.down)
+    start = patch_round(rest.pancake, local, mesh, 2 * sector.copies)
+    mesh = replace(mesh, elements=start.space.bases[1].elements)
+    solid = crowd(None, parts.particles, scale.length)
+    toward = towards_liquid(start, local, 1.0) @ scale.axes.T
+    line = TrimmedContactLine(parts.liquid.surface_tension, solid, toward)
+    surface = start.moved(scale.to_world(start.points))
+    free = {"full": "xy", "half": "x"}.get(sector.model, "")
+    alone = [rest.line, *(Centroid(axis) for axis in free)]
+    return Foot(
+        surface, sector, mesh, [rest.line, line], [rest.support], grading=None, predictor=alone
+    )
 
 
 def _on_an_area(parts: Question) -> Foot:

@@ -93,7 +93,7 @@ class Scene:
     supports : how edges and symmetry restrict the motion.
     scale : units and frame of the computation; by default the surface's size and the tension.
         Sliding edges lie in z = 0 of its frame.
-    grading : spread of the control points along the meridians.
+    grading : spread of the control points along the meridians, None to leave them alone.
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
     motion : "spines", one unknown per control point, or "cartesian", three, which needs a
@@ -102,9 +102,10 @@ class Scene:
     predictor : a scene of the same space whose equilibrium is near this one's; contact lines start
         from it.
     free_edge : the way to find a fixed edge's place at 180 degrees.
-    substrate : the solid that the membrane touches, for its kind, forces and pictures.
+    substrate : the solid that the membrane touches, for its kind and pictures.
+    particles : spheres on which it pulls too.
     hold : axes along which the user asked for the centroid to be held.
-    particle_pull : acceleration along -z that weighs a particle and the liquid on it.
+    acceleration : world vector that weighs particles and the liquid on them.
     liquid_density : of that liquid.
     kind : name of the family, which decides the measures of a solution.
     description : the scene in words of the scene file, for the result.
@@ -115,15 +116,16 @@ class Scene:
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
     scale: Scale | None = None
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
     motion: str = "spines"
     ramp: Ramp | None = field(default=None, repr=False)
     predictor: Scene | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
+    particles: Sequence[Sphere] = ()
     hold: str = ""
-    particle_pull: float = 0.0
+    acceleration: tuple[float, float, float] = (0.0, 0.0, 0.0)
     liquid_density: float = 0.0
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
@@ -254,3 +256,14 @@ class Scene:
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""
         return tuple(term.scaled(self.units) for term in self.terms)
+
+
+def described_particle(particle: Sphere) -> dict[str, Any]:
+    """A particle by the names of the scene file."""
+    return {
+        "radius": particle.radius,
+        "center": list(particle.center),
+        "density": particle.density,
+        "contact_angle": particle.contact_angle,
+        "motion": "fixed",
+    }

@@ -67,8 +67,6 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
 
 
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
-    if data.get("particle"):
-        raise later("[[particle]]")
     liquid, substrate = tables["liquid"], tables["substrate"]
     for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
         if field.split(".")[1] not in table:
@@ -83,6 +81,7 @@ def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
         hold=choice("droplet.hold", tables["droplet"].get("hold", "none"), HOLDS),
         start=_start(tables["solver"]),
         contact_line=_line(tables["solver"]),
+        particles=[_particle(f"particle[{i}]", p) for i, p in enumerate(data.get("particle", []))],
         membrane=membrane,
         **_contact(tables["solver"]),
     )
@@ -184,7 +183,7 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     if gravity[0] or gravity[1] or gravity[2] > 0:
         raise later("a sheet with gravity that does not point along -z")
     return liquid_sheet(
-        _particle(particles[0]) if particles else None,
+        _particle("particle[0]", particles[0]) if particles else None,
         size=sheet["size"],
         boundary=sheet.get("boundary", "square"),
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
@@ -198,13 +197,13 @@ def _sheet(data: Mapping[str, Any], tables: Tables) -> Scene:
     )
 
 
-def _particle(given: Mapping[str, Any]) -> Sphere:
+def _particle(field: str, given: Mapping[str, Any]) -> Sphere:
     for key in ("radius", "center", "contact_angle"):
         if key not in given:
-            raise SceneError(f"particle[0].{key}: missing; a particle needs it")
+            raise SceneError(f"{field}.{key}: missing; a particle needs it")
     motion = given.get("motion", "fixed")
-    if choice("particle[0].motion", motion, MOTIONS) != "fixed":
-        raise later(f'particle[0].motion = "{motion}"')
+    if choice(f"{field}.motion", motion, MOTIONS) != "fixed":
+        raise later(f'{field}.motion = "{motion}"')
     return Sphere(
         given["contact_angle"], given["radius"], given["center"], given.get("density", 0.0)
     )

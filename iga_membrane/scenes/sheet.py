@@ -38,7 +38,7 @@ from ..terms import (
     Volume,
 )
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
-from .scene import FreeEdge, Ramp, Scene
+from .scene import FreeEdge, Ramp, Scene, described_particle
 from .sheet_through import sheet_through
 from .start import check_net, funnel
 from .whole_membrane import WholeMembrane, sheet_with_wetted_part
@@ -195,7 +195,7 @@ def liquid_sheet(
         directions=directions,
         substrate=particle,
         kind="liquid_sheet",
-        particle_pull=gravity,
+        acceleration=(0.0, 0.0, -gravity),
         liquid_density=liquid.density,
         description=described,
     )
@@ -373,16 +373,7 @@ def _describe(
         "scene": "liquid_sheet",
         "liquid": {"surface_tension": liquid.surface_tension, "density": liquid.density},
         "gravity": {"acceleration": gravity, "direction": [0.0, 0.0, -1.0]},
-        "particle": [
-            {
-                "radius": each.radius,
-                "center": list(each.center),
-                "density": each.density,
-                "contact_angle": each.contact_angle,
-                "motion": "fixed",
-            }
-            for each in particles
-        ],
+        "particle": [described_particle(each) for each in particles],
         "sheet": {"boundary": boundary, "size": size, "liquid_weight": liquid_weight}
         | {key: value for key, value in held.items() if value is not None},
         "discretization": mesh.described(sector.model),

@@ -114,7 +114,7 @@ def sheet_with_wetted_part(
         motion="cartesian",
         substrate=particle,
         kind="liquid_sheet",
-        particle_pull=gravity,
+        acceleration=(0.0, 0.0, -gravity),
         liquid_density=liquid.density,
         description=_described(description, mesh, how),
     )

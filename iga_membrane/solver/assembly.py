@@ -78,19 +78,21 @@ class Assembly(Functional):
         return float(moved.max(initial=0.0)) / length
 
     def relaxed(self, surface: Surface, motion: Motion) -> Surface:
-        """The same liquid; what lies inside a solid, and depends on nothing, smoothed."""
+        """The same liquid; what lies inside a solid, and on which nothing depends, smoothed."""
         if self.trim is None:
             return surface
         self.trim.hold(surface.points)
-        heights = np.einsum("ki,ki->k", surface.points, motion.directions[: len(surface.points)])
-        level = np.zeros(self.size + 1)
-        level[motion.unknowns[: len(heights)]] = heights
-        step = self.trim.ties.extended(level[:-1]) - level[:-1]
-        return surface.moved(surface.points + motion.displacement(step))
+        return surface.moved(self._extended(surface.points, motion))
 
-    def extended(self, step: Array) -> Array:
-        """A step in which unknowns that nothing outside a solid depends on follow the others."""
-        return step if self.trim is None else self.trim.ties.extended(step)
+    def displacement(self, motion: Motion, step: Array) -> Array:
+        """(count, 3) of the control points; those that nothing outside a solid depends on follow
+        the others."""
+        moved = motion.displacement(step)
+        return moved if self.trim is None else self._extended(moved, motion)
+
+    def _extended(self, vectors: Array, motion: Motion) -> Array:
+        assert self.trim is not None
+        return self.trim.ties.extended(vectors, motion.directions[: len(vectors)])
 
     @property
     def rounds(self) -> int:

@@ -6,6 +6,7 @@ Nothing assembled by the solver is reused: doubled quadrature, the geometry of
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,23 +122,9 @@ def audit(
         scatter(total, absolute, motion, contact.table.functions, pull)
     lines = [t for t in terms if isinstance(t, LineTerm)]
     solid = sphere_of(scene)
-    ring = np.arange(space.bases[0].elements // sector.copies)
-    for term in lines:
-        edge = space.edge_table(term.edge, 2 * points[0], ring)
-        tangent = edge.d @ surface.points[edge.functions]
-        x = edge.values @ surface.points[edge.functions]
-        if isinstance(term, NormalLineLoad):
-            scatter(total, absolute, motion, edge.functions, _pressed(term, edge, x, tangent))
-            continue
-        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if solid is None else solid.normal(x)
-        outward = np.cross(tangent, up)
-        # the reaction along the solid's normal carries the load and the flux of Q e_z at the edge
-        load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
-        under = BodyDensity() if scene.line_inside else body
-        level = 0.5 * (_density(under, x) + under.constant) * x[..., 2]
-        density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
-        pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
-        scatter(total, absolute, motion, edge.functions, pull)
+    under = BodyDensity() if scene.line_inside else body
+    for edge, edge_pull in edge_forces(scene, surface, solid, under, line_load, 2 * points[0]):
+        scatter(total, absolute, motion, edge.functions, edge_pull)
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
     if contact is not None:
@@ -188,6 +175,40 @@ def audit(
         penetration=depth,
         deepest=place,
     )
+
+
+def edge_forces(
+    scene: Scene,
+    surface: Surface,
+    solid: Sphere | None,
+    body: BodyDensity,
+    line_load: Array,
+    points: int,
+) -> Iterator[tuple[EdgeTable, Array]]:
+    """Nodal forces (elements, local, 3) of the contact lines at the membrane's edges.
+
+    Parameters
+    ----------
+    solid : on which they lie; None is the plane z = 0.
+    body : density under the edge; points : Gauss points along it.
+    """
+    ring = np.arange(surface.space.bases[0].elements // scene.sector.copies)
+    for term in scene.local_terms():
+        if not isinstance(term, LineTerm):
+            continue
+        edge = surface.space.edge_table(term.edge, points, ring)
+        tangent = edge.d @ surface.points[edge.functions]
+        x = edge.values @ surface.points[edge.functions]
+        if isinstance(term, NormalLineLoad):
+            yield edge, _pressed(term, edge, x, tangent)
+            continue
+        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if solid is None else solid.normal(x)
+        outward = np.cross(tangent, up)
+        # the reaction along the solid's normal carries the load and the flux of Q e_z at the edge
+        load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
+        level = 0.5 * (_density(body, x) + body.constant) * x[..., 2]
+        density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
+        yield edge, edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
 
 
 def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) -> Array:

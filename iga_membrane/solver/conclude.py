@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from time import process_time
 
@@ -15,13 +16,14 @@ from ..terms import Centroid, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_record import contact_record
-from .forces import particle_forces
+from .forces import ParticleForces, particle_forces
 from .judge import contact_objection, judge, overload, reaches_boundary, too_soft
 from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, volume
 from .newton import NewtonResult
 from .options import SolverOptions
+from .particles import forces_on_particles
 from .solution import Solution
 from .stability import Stability, stability_of
 from .status import REMEDY, Status
@@ -82,7 +84,7 @@ def conclude(
         kind=kind,
         surface=surface.moved(scale.to_world(surface.points)),
         measures=found,
-        forces=particle_forces(scene, assembly, surface, multipliers, found),
+        forces=_forces(scene, assembly, surface, multipliers, found),
         multipliers=_named(assembly, multipliers, scale.pressure, scale.length),
         body=assembly.density(multipliers),
         index=verdict.index if verdict else None,
@@ -119,6 +121,19 @@ def _examined(
     if not np.isfinite(verdict.smallest):
         return None, "the smallest eigenvalue is not finite"
     return verdict, ""
+
+
+def _forces(
+    scene: Scene,
+    assembly: Assembly,
+    surface: Surface,
+    multipliers: Array,
+    found: Mapping[str, float],
+) -> tuple[ParticleForces, ...]:
+    """Forces on a sheet's particle, or on those of a droplet."""
+    if scene.particles:
+        return forces_on_particles(scene, assembly, surface, multipliers)
+    return particle_forces(scene, assembly, surface, multipliers, found)
 
 
 def _audited(

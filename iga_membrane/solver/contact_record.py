@@ -28,7 +28,7 @@ def contact_record(
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
     on_area = assembly.contact is not None and scene.line_inside is None
-    if on_area or assembly.trim is not None:
+    if on_area or (assembly.trim is not None and not assembly.edges.lines):
         return _footing(scene, assembly, result, found, checked)
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if line is None:
@@ -43,11 +43,12 @@ def contact_record(
         support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
-    rim = found.get("contact_radius", float(np.sqrt(found["A_wet"] / np.pi)))
+    wet = assembly.copies * assembly.edges.wetting(surface.points)[1] * scale.length**2
+    rim = found.get("contact_radius", float(np.sqrt(wet / np.pi)))
     return {
         "wet_solids": 1,
-        "wet_area": found["A_wet"],
-        "wet_fraction": found["A_wet"] / (np.pi * rim**2),
+        "wet_area": wet,
+        "wet_fraction": wet / (np.pi * rim**2),
         "max_penetration": checked.penetration * unit if checked else None,
         "deepest_point": _deepest(scene, checked),
         "support_force": support * scale.force,

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..arrays import Array, Index
+from ..arrays import Array, Index, Mask
 from ..scenes.scene import Scene
 from ..surface.sector import in_sector, mirrors
 from ..surface.surface import Surface
 from ..terms import BodyDensity
-from ..terms.trimmed import line_density, wet_integral
+from ..terms.trimmed import CapDensity, line_density, wet_integral
 from ..terms.variations import element_points
 from .assembly import Assembly
 from .point_supports import PointSupports
+from .trim import Trim
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,8 @@ class Footing:
     forces : (k, 3) of the membrane on them.
     radii : (k,)
     projected, areas : (k,) area of each wet spot, projected along its force and on the sphere.
-    polar, heights : (k,) mean polar angle (radians) from the sphere's top, and height, of its edge.
+    polar, heights : (k,) mean polar angle (radians) from the sphere's axis towards the liquid, its
+        top on asperities, and height, of its edge.
     angles : (k,) mean contact angle in degrees.
     """
 
@@ -48,9 +49,21 @@ class Footing:
         """(3,) force on all of them."""
         return np.asarray(self.forces.sum(axis=0))
 
+    def part(self, some: Mask) -> Footing:
+        """Some of the solids."""
+        return Footing(*(getattr(self, each.name)[some] for each in fields(self)))
+
 
 def footing(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensity) -> Footing:
-    """Contact solid by solid, the mirror images of a sector unfolded.
+    """Contact with the substrate, solid by solid; particles left out."""
+    found = contacts(scene, assembly, surface, body)
+    if assembly.trim is None:
+        return found
+    return found.part(assembly.trim.term.particle(found.which) < 0)
+
+
+def contacts(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensity) -> Footing:
+    """Contact solid by solid, particles too, the mirror images of a sector unfolded.
 
     Parameters
     ----------
@@ -69,15 +82,12 @@ def _by_lines(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDens
     The force on a sphere is minus the energy's derivative by its place, ``oint q do / |g_h|`` along
     its line (:mod:`iga_membrane.terms.trimmed`) and ``int grad(Q) N_z dA`` over its wetted cap.
     """
-    trim = assembly.trim
-    assert trim is not None
-    line, term = trim.on_line(surface.points), trim.term
+    assert assembly.trim is not None
+    spots = Spots(assembly.trim, surface, mirrors(scene.sector))
+    line, cap = spots.line, spots.cap
     pull = line_density(line, assembly.tension, body)
     pieces = (pull * (line.table.weights / np.abs(line.gh))[..., None]).sum(axis=1)
     ex, ey, ez = body.gradient
-
-    def cap(density: Callable[[Array, Array, Index], Array]) -> Array:
-        return wet_integral(line, term, density)
 
     pieces[:, 2] += cap(lambda x, n, which: n[..., 2] * (
         body.constant + ex * x[..., 0] + ey * x[..., 1] + ez * x[..., 2]
@@ -85,30 +95,62 @@ def _by_lines(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDens
     if ex or ey:
         level = cap(lambda x, n, which: x[..., 2] * n[..., 2])
         pieces[:, :2] += level[:, None] * [ex, ey]
-    projected = cap(lambda x, n, which: n[..., 2])
+    projected = cap(lambda x, n, which: (n * spots.term.axis(which)).sum(axis=-1))
     areas = cap(lambda x, n, which: np.ones(which.shape))
     arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
-    away = line.x - term.solid.center_of(line.at.which)
-    polar = np.arctan2(np.linalg.norm(away[..., :2], axis=-1), away[..., 2])
+    axis = spots.term.axis(line.at.which)
+    along = np.einsum("kqi,kqi->kq", line.at.normal, axis)
+    polar = np.arctan2(np.linalg.norm(np.cross(line.at.normal, axis), axis=-1), along)
     cosine = np.einsum("kqi,kqi->kq", line.at.normal, line.m) / line.area
     angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
     means = [arc.sum(axis=1), *((v * arc).sum(axis=1) for v in (polar, line.x[..., 2], angle))]
-    images = mirrors(scene.sector)
-    owner = np.concatenate([term.solid.nearest(line.x[:, 0] @ m).which for m in images])
-    which, inverse = np.unique(owner, return_inverse=True)
-
-    def total(values: Array) -> Array:
-        return np.bincount(inverse, np.tile(values, len(images)), len(which)).astype(float)
-
-    turned = np.concatenate([pieces @ m for m in images])
-    forces = np.zeros((len(which), 3))
-    np.add.at(forces, inverse, turned)
-    length, *sums = (total(mean) for mean in means)
+    length, *sums = (spots.total(mean) for mean in means)
     polar, heights, angles = (value / length for value in sums)
-    centers, radii = term.solid.center_of(which), term.solid.radius_of(which)
+    which, solid = spots.which, spots.term.solid
     return Footing(
-        which, centers, forces, radii, total(projected), total(areas), polar, heights, angles
+        which,
+        solid.center_of(which),
+        spots.vectors(pieces),
+        solid.radius_of(which),
+        spots.total(projected),
+        spots.total(areas),
+        polar,
+        heights,
+        angles,
     )
+
+
+class Spots:
+    """Wetted spots of a trimmed membrane, each inside its contact line, the mirror images of a
+    sector unfolded.
+
+    Attributes
+    ----------
+    line : the contact lines of one sector, in pieces; term : what they cost.
+    which : (k,) numbers of the wet spheres.
+    """
+
+    def __init__(self, trim: Trim, surface: Surface, images: list[Array]) -> None:
+        self.line, self.term = trim.on_line(surface.points), trim.term
+        self._images = images
+        first = self.line.x[:, 0]
+        owner = np.concatenate([trim.solid.nearest(first @ m).which for m in images])
+        self.which, self._place = np.unique(owner, return_inverse=True)
+
+    def cap(self, density: CapDensity) -> Array:
+        """(pieces,) integrals over the wetted surface of one sector."""
+        return wet_integral(self.line, self.term, density)
+
+    def total(self, values: Array) -> Array:
+        """(k,) sums of pieces (pieces,) on each sphere."""
+        tiled = np.tile(values, len(self._images))
+        return np.bincount(self._place, tiled, len(self.which)).astype(float)
+
+    def vectors(self, values: Array) -> Array:
+        """(k, 3) sums of vectors (pieces, 3) on each sphere."""
+        sums = np.zeros((len(self.which), 3))
+        np.add.at(sums, self._place, np.concatenate([values @ m for m in self._images]))
+        return sums
 
 
 def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: BodyDensity) -> Footing:
@@ -186,15 +228,24 @@ def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     if trim is not None:
         close &= ~np.isin(which, trim.on_line(surface.points).at.which)
     wrong = which[close][behind.ravel()[nearest[close]]]
-    centers = np.asarray(on.solid.center_of(wrong)).reshape(-1, 3)
-    return int(in_sector(surface.space, scene.sector, centers, 1e-9 * on.length).sum())
+    return _in_sector(scene, assembly, surface, wrong)
 
 
-def unsupported(assembly: Assembly, surface: Surface) -> int:
-    """How many spheres that are no point supports a membrane on point supports has met."""
+def unsupported(scene: Scene, assembly: Assembly, surface: Surface) -> int:
+    """How many spheres of the sector that are no point supports a membrane on point supports has
+    met."""
     contact = assembly.contact
     if not isinstance(contact, PointSupports):
         return 0
     x = assembly.table.values @ surface.points[assembly.table.functions]
     at = contact.solid.nearest(x)
-    return len(np.setdiff1d(at.which[at.gap < 0.0], contact.which))
+    met = np.setdiff1d(at.which[at.gap < 0.0], contact.which)
+    return _in_sector(scene, assembly, surface, met[met >= 0])
+
+
+def _in_sector(scene: Scene, assembly: Assembly, surface: Surface, which: Index) -> int:
+    """How many spheres have their centres in the sector that is computed."""
+    on = assembly.trim or assembly.contact
+    assert on is not None
+    centers = np.asarray(on.solid.center_of(which)).reshape(-1, 3)
+    return int(in_sector(surface.space, scene.sector, centers, 1e-9 * on.length).sum())

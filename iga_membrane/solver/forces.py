@@ -37,7 +37,8 @@ class ParticleForces:
     weight : (3,) F_G; contact_line : F_CL; hydrostatic : F_H; buoyancy : F_B.
     torque : (3,) about the centre: zero, as the energy does not change when a sphere of one
         contact angle turns.
-    paper : F_G, F_CL, F_H, F_B_up, F_B_down, F_e_up, F_e_down by the paper's formulas, up positive.
+    paper : F_G, F_CL, F_H, F_B_up, F_B_down, F_e_up, F_e_down by the paper's formulas, positive
+        from the particle into the liquid, which for a sheet is up.
     """
 
     weight: Array
@@ -174,7 +175,7 @@ def particle_forces(
 
     Notes
     -----
-    The scene's ``particle_pull`` weighs the particle and the liquid on it, also where the sheet
+    The scene's ``acceleration`` weighs the particle and the liquid on it, also where the sheet
     itself is computed without weight.
     """
     particle, scale = scene.substrate, scene.units
@@ -182,7 +183,7 @@ def particle_forces(
         return ()
     pull = pull_on_sphere(scene, assembly, surface, multipliers)
     line = line_on_sphere(scene, assembly, surface)
-    up, g, rho = np.array([0.0, 0.0, 1.0]), scene.particle_pull, scene.liquid_density
+    up, g, rho = np.array([0.0, 0.0, 1.0]), -scene.acceleration[2], scene.liquid_density
     pressed = pull.pressure * scale.force
     if g and not assembly.body.gradient[2]:
         # a sheet without weight still carries weighty liquid: p0 - rho g z on the cap
@@ -192,7 +193,14 @@ def particle_forces(
     buoyancy = rho * g * measures["V_cap"] * up
     weight = -4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g * up
     contact = (pull.total - pull.pressure) * scale.force
-    paper = _paper(particle, measures, float(weight[2]), float(contact[2]), float(buoyancy[2]))
+    paper = paper_forces(
+        particle,
+        measures["pressure"],
+        measures["cap_height"],
+        float(weight[2]),
+        float(contact[2]),
+        float(buoyancy[2]),
+    )
     return (ParticleForces(weight, contact, pressed - buoyancy, buoyancy, np.zeros(3), paper),)
 
 
@@ -213,11 +221,17 @@ def _weight_on_cap(line: ContactLine, solid: Sphere) -> Array:
     )
 
 
-def _paper(
-    particle: Sphere, measures: Mapping[str, float], weight: float, line: float, buoyancy: float
+def paper_forces(
+    particle: Sphere,
+    pressure: float,
+    cap_height: float,
+    weight: float,
+    line: float,
+    buoyancy: float,
 ) -> dict[str, float]:
-    """Eqs (35)-(39) with the pressure on the cap's area ``2 pi r b`` and F_B either way."""
-    on_cap = -measures["pressure"] * 2.0 * np.pi * particle.radius * measures["cap_height"]
+    """Eqs (35)-(39) along the axis from a particle into the liquid, with the pressure on the cap's
+    area ``2 pi r b`` and F_B either way."""
+    on_cap = -pressure * 2.0 * np.pi * particle.radius * cap_height
     return {
         "F_G": weight,
         "F_CL": line,

@@ -7,7 +7,7 @@ from time import process_time
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Mask
 from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..splines import Table
@@ -35,17 +35,20 @@ class Energies:
     area_vectors : (elements, points, 3) ``a_1 x a_2`` at the quadrature points.
     lowest : smallest z at the quadrature points.
     true : whether contact lines inside the membrane lie on their solid.
+    counts : (elements,) whether an element has a part outside the solids.
     """
 
     total: float
     constraints: Array
     area_vectors: Array
     lowest: float
-    true: bool = True
+    true: bool
+    counts: Mask
 
     def regular_after(self, before: Energies) -> bool:
         """Finite, and nowhere folded over against the state before it."""
-        dot = np.einsum("eqi,eqi->eq", self.area_vectors, before.area_vectors)
+        both = self.counts & before.counts
+        dot = np.einsum("eqi,eqi->eq", self.area_vectors[both], before.area_vectors[both])
         return bool(self.true and np.isfinite(self.total) and (dot > 0).all())
 
 
@@ -182,9 +185,12 @@ class Functional:
             total += self.stabilizer.energy(points)
         if self.trim is not None:
             total += self.tension * self.trim.ties.energy(points)
+        true, counts = True, np.ones(len(at.c), bool)
+        if self.trim is not None:
+            true, counts = self.trim.true(points), self.trim.counts(points)
         self.seconds += process_time() - start
-        true = self.trim is None or self.trim.true(points)
-        return Energies(total, constraints, at.c, float(at.x[..., 2].min()), true)
+        lowest = float(at.x[counts, :, 2].min(initial=np.inf))
+        return Energies(total, constraints, at.c, lowest, true, counts)
 
     def energy(self, surface: Surface) -> float:
         """Energy of the liquid and its contact, without what ties the control points."""
@@ -206,11 +212,11 @@ class Functional:
         points = surface.points
         at = vary.element_points(self.table, points)
         area = sum(vary.energies(rows, part, [])[0] for rows, part in self.parts(points, at))
-        if self.trim is not None:
-            return area, *self.trim.wetting(points)
         if self.contact is not None and self.contact.adhesion:
             return area, -self.contact.gained(points), 0.0
-        return area, *self.edges.wetting(points)
+        energy, wet = self.edges.wetting(points)
+        inside = (0.0, 0.0) if self.trim is None else self.trim.wetting(points)
+        return area, energy + inside[0], wet + inside[1]
 
     def whole(self, vector: Array) -> Array:
         """(3,) sum over all sectors of a vector integrated over one."""

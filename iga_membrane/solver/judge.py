@@ -14,7 +14,7 @@ from ..terms import Centroid, Contact
 from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line
-from .footing import Footing, engulfed, footing, unsupported
+from .footing import contacts, engulfed, unsupported
 from .measures import sphere_of
 from .stability import Stability
 from .status import Status
@@ -131,7 +131,7 @@ def contact_objection(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[Status, str | None, str] | None:
     """What makes a converged state on a contact area no success, or None."""
-    feet = footing(scene, assembly, surface, assembly.density(multipliers))
+    feet = contacts(scene, assembly, surface, assembly.density(multipliers))
     lines = assembly.trim is not None
     under = _under_base(scene, assembly, surface) if lines else (feet.which < 0).any()
     if under and not isinstance(scene.substrate, Plane):
@@ -144,7 +144,7 @@ def contact_objection(
     coarse = None if contact is None else contact.objection(contact.touch(surface.points))
     if coarse is not None:
         return Status.UNDERRESOLVED, None, coarse
-    beside = unsupported(assembly, surface)
+    beside = unsupported(scene, assembly, surface)
     if beside:
         return (
             Status.UNDERRESOLVED,
@@ -152,8 +152,9 @@ def contact_objection(
             f"the membrane has come down on {beside} asperities beside its finely meshed foot, "
             "which are no supports there: hold the droplet (droplet.hold) or start nearer to it",
         )
-    if lines:
-        off = np.cos(np.radians(feet.angles)) - np.cos(np.radians(_young(scene, feet)))
+    if assembly.trim is not None and len(feet.which):
+        young = assembly.trim.term.cosine(feet.which)
+        off = np.cos(np.radians(feet.angles)) - young
         worst = int(np.abs(off).argmax())
         if abs(off[worst]) > TOLERANCE.angle:
             return (
@@ -161,25 +162,26 @@ def contact_objection(
                 None,
                 f"the mean contact angle on sphere {int(feet.which[worst])} is "
                 f"{feet.angles[worst]:.1f} degrees instead of "
-                f"{_young(scene, feet)[worst]:g}: take more discretization.elements",
+                f"{np.degrees(np.arccos(young[worst])):g}: take more discretization.elements",
             )
     inside = engulfed(scene, assembly, surface)
     if inside:
         return (
             Status.TOPOLOGY_CHANGE,
             "engulfed",
-            f"{inside} asperities lie inside the liquid: the membrane has passed them; start from "
+            f"{inside} spheres lie inside the liquid: the membrane has passed them; start from "
             "the flat solution or with a smaller load",
         )
+    if assembly.trim is not None:
+        own = set(assembly.trim.term.particle(feet.which).tolist())
+        lost = [k for k in range(len(scene.particles)) if k not in own]
+        if lost:
+            return (
+                Status.TOPOLOGY_CHANGE,
+                "detached",
+                f"the droplet does not touch particle[{lost[0]}] any more: bring it nearer",
+            )
     return None
-
-
-def _young(scene: Scene, feet: Footing) -> Array:
-    """(k,) Young's angles of the wet spheres, degrees."""
-    solid = scene.substrate
-    assert solid is not None
-    angles = np.asarray(solid.contact_angle)
-    return np.asarray(angles[feet.which] if angles.ndim else np.full(len(feet.which), angles))
 
 
 def _under_base(scene: Scene, assembly: Assembly, surface: Surface) -> bool:

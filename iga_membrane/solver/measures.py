@@ -53,10 +53,11 @@ def measures(
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
-    elif scene.kind == "sessile_droplet" and (on_area or assembly.trim is not None):
+    elif scene.kind == "sessile_droplet" and (on_area or not assembly.edges.lines):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
-        values |= _droplet(scene, surface, values["A_wet"], body, scale)
+        wet = assembly.copies * assembly.edges.wetting(surface.points)[1] * scale.length**2
+        values |= _droplet(scene, surface, wet, body, scale)
     elif scene.kind == "film_between_rings":
         values |= _film(surface, body, scale)
         values["volume"] = values.pop("volume") - ends + _under_rings(surface) * scale.length**3

@@ -15,6 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import GeometryError
 from ..splines import Grading
+from ..surface.motion import Motion
 from ..surface.reparametrize import distortion, regridded
 from ..surface.surface import Surface
 from .assembly import Assembly, System
@@ -154,13 +155,17 @@ def _iterate(
     flee, approached = False, None
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
     steady, reach = False, ROLL
+    # where a membrane passes through solids its spines stay those of the start: what lies inside
+    # follows them, so they must not follow it
+    motion: Motion | None = None
     way: Array = np.zeros(3)
     roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
         if process_time() > options.deadline:
             raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
-        motion = assembly.spines.on(result.surface)
+        if motion is None or assembly.trim is None:
+            motion = assembly.spines.on(result.surface)
         result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
         residual = float(np.linalg.norm(system.residual(result.multipliers)) / system.scale)
@@ -177,7 +182,7 @@ def _iterate(
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
-        displacement = motion.displacement(assembly.extended(direction.step))
+        displacement = assembly.displacement(motion, direction.step)
         size = float(np.linalg.norm(displacement, axis=1).max(initial=0.0))
         if not np.isfinite(size):
             raise _Stop(Status.NONFINITE, "the Newton step is not finite")

@@ -43,7 +43,9 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
     if scene.predictor is not None:
         near = scene.predictor
         before = newton(Assembly(near), near.local_surface(), None, None, options)
-        start, multipliers = pressed(scene, assembly, before.surface), before.multipliers
+        start = pressed(scene, assembly, before.surface)
+        if len(before.multipliers) == assembly.multipliers:
+            multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)
     if before is not None:
         result.iterations = before.iterations + result.iterations
@@ -72,7 +74,7 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     which, place = np.unique(at.which, return_inverse=True)
     gap = np.full(len(which), np.inf)
     np.minimum.at(gap, place.ravel(), at.gap)
-    touched = np.flatnonzero(gap < 0)
+    touched = np.flatnonzero((gap < 0) & (trim.term.particle(which) < 0))
     which, depth = which[touched], -gap[touched]
     centers, radii = solid.center_of(which), solid.radius_of(which)
     wanted = radii * (1.0 + trim.term.cosine(which))

@@ -34,7 +34,7 @@ class Ties:
     ----------
     elements, portion : (elements,) of the space, and the portion of each that is in the sector.
     faces : between them.
-    unknowns : (elements, local) unknown of each local function, -1 for none; size : their number.
+    unknowns : (control points,) unknown of each, -1 for none; size : their number.
 
     Attributes
     ----------
@@ -53,7 +53,9 @@ class Ties:
         size: int,
     ) -> None:
         self._space, self._elements, self._portion = space, elements, portion
-        self._faces, self._unknowns, self._size = faces, unknowns, size
+        self._faces, self._of_points, self._size = faces, unknowns, size
+        self._unknowns = unknowns[space.functions[elements]]
+        self._factor: tuple[Array, Any] | None = None
 
     def begin(self, steepness: float, element: float) -> None:
         """Free to choose again, for a membrane that meets its solid at an angle (radians), with
@@ -78,8 +80,9 @@ class Ties:
         if np.array_equal(held, self._held) and np.array_equal(touched, self._touched):
             return
         self._held, self._touched = held, touched
-        for name in ("across", "idle", "_harmonic"):
+        for name in ("across", "idle", "_graph"):
             self.__dict__.pop(name, None)
+        self._factor = None
 
     @cached_property
     def across(self) -> tuple[Index, Array, Array]:
@@ -119,26 +122,39 @@ class Ties:
         lonely[self._unknowns[self._held]] = False
         return np.flatnonzero(lonely[:-1])
 
-    def extended(self, step: Array) -> Array:
-        """A step of the unknowns in which the idle ones follow the others harmonically."""
+    def extended(self, vectors: Array, directions: Array) -> Array:
+        """Positions or displacements (count, 3) of the control points, the idle ones changed along
+        their directions (count, 3) until they are harmonic in these."""
         if not len(self.idle):
-            return step
-        graph, factor = self._harmonic
-        full = step.copy()
-        full[self.idle] = 0.0
-        full[self.idle] = factor.solve(-(graph @ full)[self.idle])
+            return vectors
+        idle, graph = self._graph
+        d = directions[idle]
+        if self._factor is None or not np.array_equal(self._factor[0], d):
+            inner = graph[:, idle].tocoo()
+            turned = inner.data * np.einsum("ki,ki->k", d[inner.row], d[inner.col])
+            matrix = coo_array((turned, (inner.row, inner.col)), inner.shape)
+            self._factor = d, splu(matrix.tocsc())
+        out = np.einsum("ki,ki->k", graph @ vectors, d)
+        full = vectors.copy()
+        full[idle] -= self._factor[1].solve(out)[:, None] * d
         return full
 
     @cached_property
-    def _harmonic(self) -> tuple[Any, Any]:
-        """Laplacian of the graph of control points, and its factor on the idle ones."""
-        u = self._unknowns
+    def _graph(self) -> tuple[Index, Any]:
+        """The idle control points of the whole body, and their rows of the Laplacian of the graph
+        of all control points."""
         lonely = np.zeros(self._size + 1, bool)
         lonely[self.idle] = True
-        u = u[lonely[u].any(axis=1)]
-        i, j = np.broadcast_arrays(u[:, :, None], u[:, None, :])
-        free = (i >= 0) & (j >= 0)
-        i, j = i[free], j[free]
-        links = coo_array((np.ones(len(i)), (i, j)), (self._size, self._size)).tocsr()
+        idle = lonely[self._of_points]
+        f, size = self._space.functions, self._space.count
+        real = np.ones(f.shape, bool)
+        if self._space.pole is not None:
+            # some functions of the elements there are empty
+            real[self._space.near] = self._space.combine.any(axis=2)
+        near = idle[f].any(axis=1)
+        f, real = f[near], real[near]
+        pairs = real[:, :, None] & real[:, None, :]
+        i, j = (a[pairs] for a in np.broadcast_arrays(f[:, :, None], f[:, None, :]))
+        links = coo_array((np.ones(len(i)), (i, j)), (size, size)).tocsr()
         graph = (diags_array(links.sum(axis=1)) - links).tocsr()
-        return graph, splu(graph[self.idle][:, self.idle].tocsc())
+        return np.flatnonzero(idle), graph[idle]

@@ -74,11 +74,11 @@ class Trim:
         self.elements, self.portion = elements, portion
         self._images, self._element = images, element
         self._faces = faces_between(space, elements)
-        of_elements = unknowns[table.functions]
-        self.ties = Ties(space, elements, portion, self._faces, of_elements, size)
+        own = unknowns[: space.count]
+        self.ties = Ties(space, elements, portion, self._faces, own, size)
         self._points = space.degree + EXTRA
         self._known: list[tuple[Array, Outside]] = []
-        self._cores = np.zeros(0, int), np.zeros((0, 2)), np.zeros(0)
+        self._cores = np.zeros(0, int), np.zeros((0, 3)), np.zeros(0)
         self.begin()
 
     def forget(self) -> None:
@@ -100,6 +100,11 @@ class Trim:
     def length(self) -> float:
         """Over which contact changes."""
         return self.term.solid.scale
+
+    def counts(self, points: Array) -> Mask:
+        """(elements,) whether an element has a part outside."""
+        at = self.outside(points)
+        return np.asarray(at.touched | (at.share > 0))
 
     def outside(self, points: Array) -> Outside:
         """The outer part for control points (count, 3)."""
@@ -161,9 +166,7 @@ class Trim:
             x, slopes = patches.at(rows, u)
             at = self.term.solid.nearest(x)
             depth, outward = self._core(x, at.which)
-            gradient = at.normal.copy()
-            gradient[..., :2] += outward
-            return at.gap - depth, np.einsum("kqci,kqi->kqc", slopes, gradient), at.which
+            return at.gap - depth, np.einsum("kqci,kqi->kqc", slopes, at.normal + outward), at.which
 
         made = cut(level, len(near), count)
         sign[near] = made.sign
@@ -192,14 +195,14 @@ class Trim:
 
     def _core(self, x: Array, which: Index) -> tuple[Array, Array]:
         """How much deeper points count than they lie, well inside contact lines, and minus its
-        gradient (..., 2): the spline may rise out of its solid again there, where nothing holds it.
+        gradient (..., 3): the spline may rise out of its solid again there, where nothing holds it.
         """
         numbers, middles, radii = self._cores
         if not len(numbers):
-            return np.zeros(which.shape), np.zeros((*which.shape, 2))
+            return np.zeros(which.shape), np.zeros(x.shape)
         place = np.minimum(np.searchsorted(numbers, which), len(numbers) - 1)
         radius = np.where(numbers[place] == which, radii[place], 0.0) + 1e-300
-        away = x[..., :2] - middles[place]
+        away = _across(x - middles[place], self.term.axis(which))
         level = np.linalg.norm(away, axis=-1)
         inside = np.maximum(1.0 - level / radius, 0.0)
         strength = self.term.solid.radius_of(which)
@@ -218,12 +221,13 @@ class Trim:
         x = np.concatenate([line.x @ m for m in self._images])
         arc = np.tile(arc, (len(self._images), 1)).ravel()
         which = solid.nearest(x).which.ravel()
-        x = x.reshape(-1, 3)[:, :2]
+        x = x.reshape(-1, 3)
         numbers, place = np.unique(which, return_inverse=True)
         weight = np.bincount(place, arc)
         middles = np.stack([np.bincount(place, arc * v) / weight for v in x.T], axis=1)
         radii = np.full(len(numbers), np.inf)
-        np.minimum.at(radii, place, np.linalg.norm(x - middles[place], axis=1))
+        away = _across(x - middles[place], self.term.axis(which))
+        np.minimum.at(radii, place, np.linalg.norm(away, axis=1))
         psi = np.pi - np.arccos(self.term.cosine(numbers))
         again = 0.5 * psi * solid.radius_of(numbers)
         self._cores = numbers, middles, np.clip(radii - again, CORE[0] * radii, CORE[1] * radii)
@@ -276,5 +280,10 @@ class Trim:
     def hold(self, points: Array) -> None:
         """Choose what is tied and what is idle, for a state and the steps from it."""
         self._find_cores(points)
-        at = self.outside(points)
-        self.ties.hold(at.touched | (at.share > 0), at.touched)
+        self.ties.hold(self.counts(points), self.outside(points).touched)
+
+
+def _across(vectors: Array, axes: Array) -> Array:
+    """The part of vectors (..., 3) at right angles to unit axes."""
+    along = np.einsum("...i,...i->...", vectors, axes)
+    return np.asarray(vectors - along[..., None] * axes)

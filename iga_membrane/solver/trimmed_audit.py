@@ -13,9 +13,10 @@ from ..scenes.scene import Scene
 from ..splines import Table
 from ..surface.motion import Motion
 from ..surface.surface import Surface
-from ..terms import BodyDensity, SurfaceTension
+from ..terms import BodyDensity, PlaneContactLine, SurfaceTension
 from .assembly import TINY
-from .audit import Audit, missing_volume, scatter, stands_free
+from .audit import Audit, edge_forces, missing_volume, scatter, stands_free
+from .contact_line import contact_line, vertical_forces
 from .trim import EXTRA, Trim
 
 DENSE = 12
@@ -52,6 +53,10 @@ def trimmed_audit(
     density = tension * (solid - line.cosine[..., None] * membrane) * (arc / sine)[..., None]
     pull = line.table.rows[0].transpose(0, 2, 1) @ density
     scatter(total, absolute, motion, line.table.functions, pull)
+    for edge, pull in edge_forces(
+        scene, surface, None, body, np.zeros(len(surface.points)), points
+    ):
+        scatter(total, absolute, motion, edge.functions, pull)
     pull = tension * trim.ties.forces(surface.points)
     scatter(total, absolute, motion, trim.ties.across[0], pull)
     total[trim.ties.idle] = 0.0
@@ -59,7 +64,8 @@ def trimmed_audit(
     residual = float(np.linalg.norm(total[:-1])) / size
     inside += trim.under(surface.points, BodyDensity(1.0), outside)
     inside *= sector.copies
-    depth = _depth(surface, trim, outside.share)
+    off = float(np.abs(line.at.gap).max(initial=0.0)) / trim.length
+    depth = max(_depth(surface, trim, outside.share), off)
     volume = missing_volume(terms, inside)
     if not stands_free(scene):
         return Audit(residual, volume, penetration=depth)
@@ -72,12 +78,27 @@ def trimmed_audit(
             outside,
         )
     push = sector.copies * push
+    foot = next((t for t in terms if isinstance(t, PlaneContactLine)), None)
+    cosine = 0.0
+    if foot is not None:
+        rim = contact_line(surface, foot.edge, points)
+        on_plane = vertical_forces(rim, body, tension, foot.contact_angle)
+        push[2] -= on_plane.push - on_plane.line
+        young = float(np.cos(np.radians(foot.contact_angle)))
+        cosine = float(np.cos(rim.angle) @ rim.arc / rim.arc.sum()) - young
     weight = float(np.linalg.norm(gradient)) * inside
     size = max(weight, abs(float(push[2])), TINY)
     missing = push + gradient * inside
     loose = [axis not in sector.mirrored for axis in "xy"]
     sideways = float(np.hypot(*(missing[:2] * loose))) / size
-    return Audit(residual, volume, abs(float(missing[2])) / size, sideways, penetration=depth)
+    return Audit(
+        residual,
+        volume,
+        abs(float(missing[2])) / size,
+        sideways,
+        angle=cosine,
+        penetration=depth,
+    )
 
 
 def _membrane(

@@ -8,6 +8,7 @@ middle to the south pole, sides' middles to four points of the equator, corners 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,12 +33,17 @@ class Meridian:
     z: Array
     normal: Array
 
-    def __call__(self, size: Array) -> tuple[Array, Array, Array]:
-        """``r, z, normal`` where ``|rho|`` is given; 1 at the widest place."""
+    @cached_property
+    def log(self) -> Array:
+        """(k,) ``log |rho|``, 0 at the widest place."""
         step = np.hypot(np.diff(self.r), np.diff(self.z))
         middle = 0.5 * (self.r[1:] + self.r[:-1])
         log = np.concatenate([[0.0], np.cumsum(step / middle)])
-        log -= log[self.r.argmax()]
+        return np.asarray(log - log[self.r.argmax()])
+
+    def __call__(self, size: Array) -> tuple[Array, Array, Array]:
+        """``r, z, normal`` where ``|rho|`` is given; 1 at the widest place."""
+        log = self.log
         with np.errstate(divide="ignore"):
             at = np.log(size)
         r = np.interp(at, log, self.r)
@@ -50,13 +56,10 @@ class Meridian:
 
     def size_at(self, radius: float) -> float:
         """``|rho|`` where the meridian below its widest place has a radius."""
-        step = np.hypot(np.diff(self.r), np.diff(self.z))
-        log = np.concatenate([[0.0], np.cumsum(step / (0.5 * (self.r[1:] + self.r[:-1])))])
-        widest = int(self.r.argmax())
-        log -= log[widest]
         if radius <= self.r[0]:
-            return float(np.exp(log[0]) * radius / self.r[0])
-        return float(np.exp(np.interp(radius, self.r[: widest + 1], log[: widest + 1])))
+            return float(np.exp(self.log[0]) * radius / self.r[0])
+        below = slice(int(self.r.argmax()) + 1)
+        return float(np.exp(np.interp(radius, self.r[below], self.log[below])))
 
 
 @dataclass(frozen=True)

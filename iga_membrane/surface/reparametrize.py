@@ -143,7 +143,7 @@ def each_arc_length(surface: Surface, grading: Grading) -> Surface:
             break
     rows = rational_matrix(space, t.ravel()).reshape(*t.shape, -1)
     values = np.einsum("ijk,ikc->ijc", rows, lines)
-    return _interpolated(space, values, matrix)
+    return interpolated(space, values, matrix)
 
 
 def straightened(surface: Surface) -> Surface:
@@ -171,11 +171,12 @@ def straightened(surface: Surface) -> Surface:
         xi[..., 0] -= step
         if np.abs(step).max() <= 1e-14 * (ring.breaks[-1] - ring.breaks[0]):
             break
-    return _interpolated(space, surface.at(xi, 1).position, matrix)
+    return interpolated(space, surface.at(xi, 1).position, matrix)
 
 
-def _interpolated(space: Space, values: Array, matrix: Array) -> Surface:
-    """Surface with given values (n1, n2, 3) at the abscissae of a ring space."""
+def interpolated(space: Space, values: Array, matrix: Array) -> Surface:
+    """Surface with given values (n1, n2, 3) at the abscissae of a ring space and, along it, at
+    the points of :func:`.ring.meridian_interpolation`, which gives the matrix."""
     ring = space.bases[0]
     along = np.linalg.solve(ring.matrix(ring.abscissae), values.reshape(ring.count, -1))
     net = np.einsum("jk,ikc->ijc", np.linalg.inv(matrix), along.reshape(values.shape))

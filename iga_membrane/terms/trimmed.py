@@ -45,10 +45,13 @@ class TrimmedContactLine(Term):
     gamma : surface tension.
     solid : sphere, lattice or list of spheres, with its contact angles; a plane under them is left
         out, no line is computed on it.
+    toward : (k, 3) unit vectors towards the liquid from the last spheres of a list, the particles;
+        away from the liquid they are dry. From all others it points upwards.
     """
 
     gamma: float
     solid: Plane | Sphere | SphereLattice | Spheres
+    toward: Array | None = None
     name = "wetting"
 
     def __post_init__(self) -> None:
@@ -57,7 +60,22 @@ class TrimmedContactLine(Term):
             object.__setattr__(self, "solid", replace(self.solid, base=None))
 
     def scaled(self, scale: Scale) -> TrimmedContactLine:
-        return TrimmedContactLine(self.gamma / scale.tension, scale.local_solid(self.solid))
+        toward = None if self.toward is None else self.toward @ scale.axes
+        return TrimmedContactLine(self.gamma / scale.tension, scale.local_solid(self.solid), toward)
+
+    def axis(self, which: Index) -> Array:
+        """(..., 3) towards the liquid from spheres by their numbers."""
+        axes = np.broadcast_to([0.0, 0.0, 1.0], (*np.shape(which), 3))
+        if self.toward is None:
+            return axes
+        own = self.particle(which)
+        return np.where(own[..., None] >= 0, self.toward[own], axes)
+
+    def particle(self, which: Index) -> Index:
+        """(...) number among the particles of spheres by their numbers, -1 for others."""
+        if self.toward is None or not isinstance(self.solid, Spheres):
+            return np.full(np.shape(which), -1)
+        return np.maximum(np.asarray(which) - len(self.solid.centers) + len(self.toward), -1)
 
     def cosine(self, which: Index) -> Array:
         """(...) cosine of the contact angle on spheres by their numbers."""
@@ -205,10 +223,11 @@ def end_hessian(ends: Line, tension: float, body: BodyDensity, directions: Array
 
 
 def wet_integral(line: Line, term: TrimmedContactLine, density: CapDensity) -> Array:
-    """(pieces,) integrals over the wetted surface, by lines round the top of each sphere.
+    """(pieces,) integrals over the wetted surface, by lines round the axis of each sphere.
 
-    With ``X`` from the centre, an integral over the cap is ``oint G (X Y' - Y X') / (X^2 + Y^2)``,
-    ``G`` the integral along the meridian from the top to the line.
+    With ``X`` from the centre and ``a`` the axis towards the liquid, an integral over the cap is
+    ``oint G a . (X x X') / |a x X|^2``, ``G`` the integral along the meridian from the axis to the
+    line. It holds wherever the axis lies, as long as its other end is dry.
 
     Parameters
     ----------
@@ -216,16 +235,18 @@ def wet_integral(line: Line, term: TrimmedContactLine, density: CapDensity) -> A
     """
     which = line.at.which
     center, r = term.solid.center_of(which), term.solid.radius_of(which)[..., None]
-    away = line.x - center
-    level = np.linalg.norm(away[..., :2], axis=-1)
+    away, axis = line.x - center, term.axis(which)
+    along = np.einsum("kqi,kqi->kq", away, axis)
+    across = away - along[..., None] * axis
+    level = np.linalg.norm(across, axis=-1)
     # the wetted side lies to the left: along h the gap rises
     left = np.where(line.table.across == 1, 1, -1) * line.table.rising
-    turn = (away[..., 0] * line.tangent[..., 1] - away[..., 1] * line.tangent[..., 0]) / level**2
-    polar = np.arctan2(level, away[..., 2])[..., None]
+    turn = np.einsum("kqi,kqi->kq", axis, cross(away, line.tangent)) / level**2
+    polar = np.arctan2(level, along)[..., None]
     u, w = gauss(ARC)
     angle = polar * u
-    out = away[..., None, :2] / level[..., None, None]
-    normal = np.concatenate([np.sin(angle)[..., None] * out, np.cos(angle)[..., None]], axis=-1)
+    out = (across / level[..., None])[..., None, :]
+    normal = np.sin(angle)[..., None] * out + np.cos(angle)[..., None] * axis[..., None, :]
     x = center[..., None, :] + r[..., None] * normal
     value = density(x, normal, np.broadcast_to(which[..., None], angle.shape))
     whole = (value * np.sin(angle) * polar * r**2) @ w

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from analysis.sweep_scenes import Counting, Deadly, drop, hanging, threads
+from helpers import droplet_file
 
 import iga_membrane as iga
 from iga_membrane.analysis.record_store import RecordStore
@@ -286,23 +287,14 @@ def test_an_interrupt_ends_a_sweep_and_leaves_valid_records(tmp_path):
     assert not list(where.glob(".*.claim"))
 
 
-SWEEP = """
-scene = "sessile_droplet"
-[liquid]
-volume = 4.1887902047863905
-[gravity]
-acceleration = 1.0
-[substrate]
-contact_angle = 90.0
-[discretization]
-elements = 8
-[[over]]
+OVER = """[[over]]
 parameter = "substrate.contact_angle"
 values = [60.0, 120.0]
 [[over]]
 parameter = "gravity.acceleration"
 values = [0.5, 1.0]
 """
+SWEEP = droplet_file(90.0, 1.0, OVER, elements=8)
 
 
 def test_the_command_line_sweeps_and_goes_on(tmp_path, capsys):

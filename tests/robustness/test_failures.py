@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from helpers import droplet, particle_sheet, pinned_cap
+from helpers import droplet, droplet_file, particle_sheet, path_file, pinned_cap
 
 import iga_membrane as iga
 from iga_membrane.cli import main
@@ -239,43 +239,20 @@ def test_too_little_memory_is_named(monkeypatch):
         iga.solve(droplet(120, elements=8))
 
 
-SCENE = """
-scene = "sessile_droplet"
-[liquid]
-volume = 4.1887902047863905
-[substrate]
-contact_angle = 120.0
-[discretization]
-elements = 8
-"""
-
-
 def test_the_command_line_names_a_lack_of_memory(tmp_path, monkeypatch, capsys):
     def full(*arguments, **options):
         raise MemoryError
 
     monkeypatch.setattr("iga_membrane.cli.solve", full)
-    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "scene.toml").write_text(droplet_file(120.0, elements=8))
     code = main(["solve", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")])
     assert code == 3
     assert "out of memory" in capsys.readouterr().err
 
 
-SLOW = """
-scene = "sessile_droplet"
-[liquid]
-volume = 4.1887902047863905
-[gravity]
-acceleration = 1.0
-[substrate]
-contact_angle = 90.0
-[discretization]
-elements = 40
-model = "half"
-[[path]]
-parameter = "substrate.contact_angle"
-values = [90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 170.0]
-"""
+ANGLES = [90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 170.0]
+PATH = path_file("substrate.contact_angle", ANGLES)
+SLOW = droplet_file(90.0, 1.0, PATH, elements=40, model="half")
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.35])
