@@ -91,7 +91,8 @@ def whole_skin(
         elements = _elements(drop, pattern, wide, reach, many)
     fine = fine_part(reach, elements) if many else FINE
     spot, size = pattern.spot(drop.pressure), wide / (fine * elements)
-    narrow = many and spot <= NARROW * WIDER * size and size * PER_SPACING[0] <= pattern.spacing
+    narrow = many and pattern.repels and not pattern.stiffness
+    narrow &= spot <= NARROW * WIDER * size <= NARROW * WIDER * pattern.spacing / PER_SPACING[0]
     stretch = Stretch(fine, reach / fine) if reach < fine else Stretch()
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
@@ -102,14 +103,14 @@ def whole_skin(
         points[:, 2] += length if start == "above" else 0.0
     elif many:
         points[:, 2] -= 0.5 * pattern.sag(drop.pressure)
-    return Skin(space, points, directions, drop.pressure, many, narrow and not pattern.stiffness)
+    return Skin(space, points, directions, drop.pressure, many, narrow)
 
 
 def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
     """How far out asperities may be wet."""
     widest = 0.95 * float(drop.r.max())
     wide = 1.1 * drop.foot * (1.0 if pattern.lies else SPREAD) + 2.0 * pattern.length
-    if many:
+    if many and pattern.repels:
         # the sag brings the rim, of curvature p, as much lower
         rim = np.sqrt(2.0 * pattern.sag(drop.pressure) / drop.pressure)
         wide = min(wide, drop.foot + rim + 1.5 * np.sqrt(pattern.cell))
@@ -128,7 +129,10 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
     across = wide / reach * min(reach / FINE, 1.0)  # length of the even elements, by their number
     needed = PER_RADIUS * across / length
     if many and not stiffness:
-        needed = graded(reach, wide / element_size(pattern, drop.pressure, wide / (FINE * LEAST)))
+        size = length / PER_RADIUS
+        if pattern.repels:
+            size = element_size(pattern, drop.pressure, wide / (FINE * LEAST))
+        needed = graded(reach, wide / size)
     if stiffness:
         sunk = (drop.pressure + 2.0 / length) / stiffness / length
         needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
@@ -138,7 +142,7 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
             f"elements from the middle to a side, more than {MOST}: not available yet; give "
             "larger asperities, or discretization.elements"
         )
-    return max(LEAST if many else FEWEST, int(np.ceil(needed)))
+    return max(LEAST if many and pattern.repels else FEWEST, int(np.ceil(needed)))
 
 
 def _meridian(drop: FlatDrop, wide: float) -> Meridian:

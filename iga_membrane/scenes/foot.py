@@ -174,7 +174,7 @@ def _on_an_area(parts: Question) -> Foot:
     lies = attracts or least == 180.0
     unit_law = scale.length**2 / scale.tension
     stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
-    pattern = Pattern(length, cell_of(local), lies, stiffness)
+    pattern = Pattern(length, cell_of(local), lies, least == 180.0, stiffness)
     skin = whole_skin(parts.down, unit, pattern, mesh.degree, elements, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
@@ -192,7 +192,7 @@ def _on_an_area(parts: Question) -> Foot:
     law = parts.law
     if skin.narrow:
         law = replace(law, point_supports=True)
-    elif skin.many and law.penalty is None:
+    elif skin.many and pattern.repels and law.penalty is None:
         law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
     foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
     if least == 180.0:

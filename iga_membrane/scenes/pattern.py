@@ -46,6 +46,7 @@ class Pattern:
     cell : area of the substrate per asperity; infinite without asperities.
     lies : whether the membrane lies on the asperities; where it passes through them, below 180
         degrees, more of them are wet.
+    repels : whether the contact angle is 180 degrees.
     stiffness : traction over depth of a penalty that was asked for, else 0: the mesh is then as
         fine as the depth asks for.
     """
@@ -53,11 +54,12 @@ class Pattern:
     length: float
     cell: float = np.inf
     lies: bool = True
+    repels: bool = True
     stiffness: float = 0.0
 
     def many(self, foot: float) -> bool:
         """Whether many asperities lie under a foot of a radius."""
-        return self.lies and np.pi * foot**2 > MANY * self.cell
+        return bool(np.pi * foot**2 > MANY * self.cell)
 
     @property
     def spacing(self) -> float:

@@ -43,9 +43,12 @@ class SparsePattern:
     def __init__(self, size: int, groups: Sequence[Index]) -> None:
         self.size = size
         keys = np.concatenate([_keys(size, unknowns) for unknowns in groups])
-        self.entries = np.unique(keys[keys < size * size])
-        columns, self.rows = np.divmod(self.entries, size)
-        self.starts = np.searchsorted(columns, np.arange(size + 1))
+        columns, rows = np.divmod(keys[keys < size * size], size)
+        filled = csc_array((np.ones(len(rows), bool), (rows, columns)), (size, size))
+        filled.sum_duplicates()  # sorts, several times faster than unique keys
+        self.rows, self.starts = filled.indices, filled.indptr
+        columns = np.repeat(np.arange(size), np.diff(self.starts))
+        self.entries = columns * size + self.rows
         self.diagonal = np.searchsorted(self.entries, np.arange(size) * (size + 1))
         self._slots: dict[bytes, Index] = {}
 
