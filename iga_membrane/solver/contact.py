@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index
-from ..solids import Nearest, Plane, Solid
+from ..solids import Nearest, Plane, Solid, Spheres
 from ..splines import Space, Table
 from ..surface.surface import Surface
 
@@ -39,6 +39,8 @@ RANGE = 1.0
 """Range of adhesion over the gap at which a membrane has left the solid after one element."""
 ACROSS = 4
 """Elements across a wet asperity that resolve it."""
+HIGH = 4.0
+"""Height above spheres, over the contact length, from which they are not searched."""
 POINTS = 6
 """Quadrature points in contact on every wet asperity, in the mean, that resolve its spot."""
 SETTLED = 1e-6
@@ -101,6 +103,7 @@ class ContactSet:
         self._space, self._depth, self.adhesion = space, depth, adhesion
         self._lift = np.zeros(area.shape)
         self._lifts = LIFTS
+        self._known: tuple[Array, Nearest] | None = None
         self.length = min(solid.scale, 1.0)
         self.exact = penalty is None
         self.multipliers: Array = np.zeros(area.shape)
@@ -130,7 +133,7 @@ class ContactSet:
 
     def touch(self, points: Array) -> Touch:
         """Gaps and tractions for control points (count, 3)."""
-        at = self.solid.nearest(self.table.values @ points[self.table.functions])
+        at = self._nearest(points)
         gap = at.gap - self._lift
         traction = np.maximum(self.multipliers - gap / self.delta, 0.0)
         if not self.adhesion:
@@ -141,6 +144,28 @@ class ContactSet:
         pull = self.adhesion / self._range * 4.0 * s * (1.0 - s**2)
         rise = self.adhesion / self._range**2 * (4.0 - 12.0 * s**2) * inside
         return Touch(at, traction, (1.0 - s**2) ** 2, pull, rise)
+
+    def _nearest(self, points: Array) -> Nearest:
+        """Nearest surfaces at the contact points, known for the last control points."""
+        if self._known is None or self._known[0] is not points:
+            x = self.table.values @ points[self.table.functions]
+            self._known = points, self._nearest_of(x)
+        return self._known[1]
+
+    def _nearest_of(self, x: Array) -> Nearest:
+        """Exact for points (..., 3) near spheres; high above them only their height counts, since
+        searching there costs far more than near them."""
+        if not isinstance(self.solid, Spheres):
+            return self.solid.nearest(x)
+        top = float((np.asarray(self.solid.centers)[:, 2] + self.solid.radii).max())
+        low = x[..., 2] <= top + HIGH * self.length
+        up, none = np.zeros_like(x), np.zeros(x.shape[:-1])
+        up[..., 2] = 1.0
+        at = Nearest(x[..., 2] - top, up, none, np.full(x.shape[:-1], -1))
+        near = self.solid.nearest(x[low])
+        for known, exact in zip(vars(at).values(), vars(near).values(), strict=True):
+            known[low] = exact
+        return at
 
     def gained(self, points: Array) -> float:
         """Energy of adhesion that is gained (one sector)."""
