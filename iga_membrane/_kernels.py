@@ -34,13 +34,18 @@ def _hessian(
     along: Array,
     tension: float,
 ) -> Array:
-    """(elements, local, local) second variation; see ``variations.hessian`` for the formulas."""
-    elements, points, local = values.shape
+    """(elements, local, local) second variation; see ``variations.hessian`` for the formulas.
+
+    ``values, d1, d2`` of one element only serve all.
+    """
+    elements = len(weights)
+    shapes, points, local = values.shape
     out = np.zeros((elements, local, local))
     r = np.empty((7, local))
     half = np.empty((local, local))
     for e in range(elements):
         half[:] = 0.0
+        k = min(e, shapes - 1)
         for q in range(points):
             w, area_q = weights[e, q], area[e, q]
             t1, t2, c_q = a1[e, q], a2[e, q], c[e, q]
@@ -53,7 +58,7 @@ def _hessian(
             for b in range(local):
                 x, y, z = along[e, b, 0], along[e, b, 1], along[e, b, 2]
                 normal = x * n0 + y * n1 + z * n2
-                value, one, two = values[e, q, b], d1[e, q, b], d2[e, q, b]
+                value, one, two = values[k, q, b], d1[k, q, b], d2[k, q, b]
                 r[0, b] = one * normal
                 r[1, b] = two * normal
                 r[2, b] = two * (y * m2 - z * m1)
@@ -66,9 +71,9 @@ def _hessian(
                 g1, g2 = r[0, a], r[1, a]
                 l0 = a22 * g1 - a12 * g2
                 l1 = a11 * g2 - a12 * g1
-                one = w * d1[e, q, a]
+                one = w * d1[k, q, a]
                 l2, l3, l4 = one * x, one * y, one * z
-                value = w * values[e, q, a]
+                value = w * values[k, q, a]
                 l5 = value * (slope[e, q, 0] * x + slope[e, q, 1] * y + slope[e, q, 2] * z)
                 l6 = value * z * c_q[2]
                 for b in range(local):

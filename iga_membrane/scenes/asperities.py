@@ -13,10 +13,20 @@ from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Solid
 from ..splines import Space, pillow_space
-from ..splines.quadrature import gauss
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from .liquid import Model
-from .start import Pancake, least_energy_pancake
+from .pattern import (
+    FINE,
+    LEAST,
+    NARROW,
+    PER_SPACING,
+    WIDER,
+    Pattern,
+    element_size,
+    fine_part,
+    graded,
+)
+from .start import FlatDrop, flat_drop, rounded
 
 STARTS = ("flat", "above", "touching")
 PER_RADIUS = 3.35
@@ -31,8 +41,6 @@ MOST = 600
 SPREAD = 1.15
 """Growth of the finely meshed foot below 180 degrees; the same for all angles, so that paths in the
 angle keep their mesh."""
-FINE = 0.75
-"""Part of the elements from the middle of the square to a side that lies under the foot."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,61 +51,49 @@ class Skin:
     ----------
     space, points, directions : of the membrane.
     pressure : estimated at its foot.
+    many : whether many asperities carry it; narrow : each of them at one point of the mesh.
     """
 
     space: Space
     points: Array
     directions: Array
     pressure: float
+    many: bool
+    narrow: bool
 
 
 def whole_skin(
     bond: float,
     volume: float,
-    length: float,
+    pattern: Pattern,
     degree: int,
     elements: int,
-    lies: bool = True,
     start: object = None,
-    stiffness: float = 0.0,
 ) -> Skin:
     """Flat-footed droplet of least energy, its foot meshed evenly.
 
     Parameters
     ----------
     bond : density times vertical gravity.
-    length : over which the contact changes: radius of the smallest asperity.
-    elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along
-        ``length``.
-    lies : whether the membrane lies on the asperities; where it passes through them, below 180
-        degrees, more of them are wet.
+    elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along the
+        pattern's length.
     start : "above" or "touching" for a sphere; anything else for the flat-footed droplet.
-    stiffness : traction over depth of a penalty, 0 without: the mesh is then as fine as the depth
-        asks for.
     """
-    pancake = least_energy_pancake(180.0, bond, volume, steepest=180.0)
-    pressure = estimated_pressure(pancake, bond, volume)
-    foot = estimated_foot(pancake, bond, volume)
-    foot *= 1.0 if lies else SPREAD
-    widest = pancake.flat + pancake.radius
-    wide = min(1.1 * foot + 2.0 * length, 0.95 * widest)
-    meridian = _meridian(pancake, wide)
+    length = pattern.length
+    drop = rounded(bond, volume)
+    many = pattern.many(drop.foot)
+    if many:
+        drop = flat_drop(bond, volume)
+    wide = _foot(drop, pattern, many)
+    meridian = _meridian(drop, wide)
     reach = inverse_lemniscate_sine(meridian.size_at(wide))
-    stretch = Stretch(FINE, reach / FINE) if reach < FINE else Stretch()
     if not elements:
-        # physical length of the even elements, times their number
-        across = wide / reach * stretch.slope
-        needed = PER_RADIUS * across / length
-        if stiffness:
-            sunk = (pressure + 2.0 / length) / stiffness / length
-            needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
-        if needed > MOST:
-            raise SceneError(
-                f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "
-                f"elements from the middle to a side, more than {MOST}: not available yet; give "
-                "larger asperities, or discretization.elements"
-            )
-        elements = max(FEWEST, int(np.ceil(needed)))
+        elements = _elements(drop, pattern, wide, reach, many)
+    fine = fine_part(reach, elements) if many else FINE
+    spot, size = pattern.spot(drop.pressure), wide / (fine * elements)
+    narrow = many and pattern.repels and not pattern.stiffness
+    narrow &= spot <= NARROW * WIDER * size <= NARROW * WIDER * pattern.spacing / PER_SPACING[0]
+    stretch = Stretch(fine, reach / fine) if reach < fine else Stretch()
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
@@ -105,41 +101,59 @@ def whole_skin(
             space, ball((3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)), stretch
         )
         points[:, 2] += length if start == "above" else 0.0
-    return Skin(space, points, directions, pressure)
+    elif many:
+        points[:, 2] -= 0.5 * pattern.sag(drop.pressure)
+    return Skin(space, points, directions, drop.pressure, many, narrow)
 
 
-def estimated_foot(pancake: Pancake, bond: float, volume: float) -> float:
-    """Contact radius on a plane at 180 degrees: weight over pressure."""
-    pressure = estimated_pressure(pancake, bond, volume)
-    return float(np.sqrt(bond * volume / (np.pi * pressure)))
+def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
+    """How far out asperities may be wet."""
+    widest = 0.95 * float(drop.r.max())
+    wide = 1.1 * drop.foot * (1.0 if pattern.lies else SPREAD) + 2.0 * pattern.length
+    if many and pattern.repels:
+        # the sag brings the rim, of curvature p, as much lower
+        rim = np.sqrt(2.0 * pattern.sag(drop.pressure) / drop.pressure)
+        wide = min(wide, drop.foot + rim + 1.5 * np.sqrt(pattern.cell))
+    return float(min(wide, widest))
 
 
-def estimated_pressure(pancake: Pancake, bond: float, volume: float) -> float:
-    """Pressure at a plane at 180 degrees, by the virial ``3 p V = 2 E_surf + 4 E_grav`` of the
-    start."""
-    u, w = gauss(20)
-    angle = pancake.turn * u
-    r = pancake.flat + pancake.radius * np.sin(angle)
-    z = pancake.radius * pancake.aspect * (np.cos(angle) - np.cos(pancake.turn))
-    rate = pancake.radius * pancake.turn * w
-    area = 2.0 * np.pi * r @ (rate * np.hypot(np.cos(angle), pancake.aspect * np.sin(angle)))
-    area += 2.0 * np.pi * pancake.flat**2
-    weight = bond * np.pi * (r**2 * z) @ (rate * pancake.aspect * np.sin(angle))
-    return float((2.0 * area + 4.0 * weight) / (3.0 * volume))
+def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many: bool) -> int:
+    """Elements from the middle of the foot to the widest place by default.
+
+    Raises
+    ------
+    SceneError
+        If the asperities are too small.
+    """
+    length, stiffness = pattern.length, pattern.stiffness
+    across = wide / reach * min(reach / FINE, 1.0)  # length of the even elements, by their number
+    needed = PER_RADIUS * across / length
+    if many and not stiffness:
+        size = length / PER_RADIUS
+        if pattern.repels:
+            size = element_size(pattern, drop.pressure, wide / (FINE * LEAST))
+        needed = graded(reach, wide / size)
+    if stiffness:
+        sunk = (drop.pressure + 2.0 / length) / stiffness / length
+        needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
+    if needed > MOST:
+        raise SceneError(
+            f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "
+            f"elements from the middle to a side, more than {MOST}: not available yet; give "
+            "larger asperities, or discretization.elements"
+        )
+    return max(LEAST if many and pattern.repels else FEWEST, int(np.ceil(needed)))
 
 
-def _meridian(pancake: Pancake, wide: float) -> Meridian:
+def _meridian(drop: FlatDrop, wide: float) -> Meridian:
     """The start's meridian; its directions are vertical as far out as asperities may be wet, and
     turn into its normals at the widest place."""
-    u = np.linspace(pancake.turn, 0.0, 2001)
-    b, rho, a = pancake.flat, pancake.radius, pancake.aspect
-    r, z = b + rho * np.sin(u), rho * a * (np.cos(u) - np.cos(pancake.turn))
-    angle = np.arctan2(a * np.sin(u), -np.cos(u))
-    part = np.clip((r - wide) / (b + rho - wide), 0.0, 1.0)
-    angle = np.where(u > 0.5 * np.pi, angle * part**2 * (3.0 - 2.0 * part), angle)
-    inside = r >= 1e-3 * rho
+    widest = float(drop.r.max())
+    part = np.clip((drop.r - wide) / (widest - wide), 0.0, 1.0)
+    angle = np.pi - drop.turn
+    angle = np.where(drop.turn > 0.5 * np.pi, angle * part**2 * (3.0 - 2.0 * part), angle)
     normal = np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
-    return Meridian(r[inside], z[inside], normal[inside])
+    return Meridian(drop.r, drop.z, normal)
 
 
 def ball(radius: float) -> Meridian:

@@ -36,6 +36,7 @@ from .foot import (
     with_rim,
 )
 from .liquid import Discretization, Liquid, with_defaults
+from .particle_foot import with_particles
 from .scene import FreeEdge, Ramp, Scene, described_particle
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
@@ -120,7 +121,7 @@ def sessile_droplet(
     )
     grains = check_particles(particles)
     parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, grains)
-    built = foot_of(parts)
+    built = with_particles(parts) if grains else foot_of(parts)
     sector = built.sector
     if isinstance(substrate, Plane):
         free = {"full": "xy", "half": "x"}.get(sector.model, "")

@@ -25,11 +25,10 @@ from ..terms import (
     TrimmedContactLine,
 )
 from ..terms.term import AnySolid
-from .asperities import ball, estimated_foot, smallest_model, whole_skin
-from .beside import crowd, mirrored_model, towards_liquid
+from .asperities import ball, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model
-from .round_patch import of_droplet, of_pancake, round_patch
-from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake
+from .pattern import Pattern, cell_of
+from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +79,6 @@ CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
 def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
-    if parts.particles:
-        return _with_particles(parts)
     refused: tuple[str, ...] = ("trimmed", "adhesion")
     if isinstance(solid, (SphereLattice, Spheres)):
         refused = ("conforming",)
@@ -105,8 +102,8 @@ def _on_a_line(parts: Question) -> Foot:
     """The liquid-gas surface alone, its edge a contact line on a plane or a sphere."""
     substrate, mesh, scale = parts.substrate, parts.asked.mesh(), parts.scale
     assert isinstance(substrate, (Plane, Sphere))
-    sector = _sector(mesh, parts.bond)
-    foot = _foot(substrate, parts.liquid, scale.length, parts.down)
+    sector = sector_of(mesh, parts.bond)
+    foot = rest_of(substrate, parts.liquid, scale.length, parts.down)
     bond = abs(float(parts.bond[2]))
     grading = _grading(substrate.contact_angle, bond, foot.pancake.length)
     if parts.law.penalty is not None:
@@ -121,57 +118,6 @@ def _on_a_line(parts: Question) -> Foot:
         start = parts.start
         _check_start(start, mesh, substrate)
     return Foot(start, sector, mesh, [foot.line], [foot.support], grading)
-
-
-def _with_particles(parts: Question) -> Foot:
-    """A drop on a plane whose membrane passes through particles."""
-    scale, mesh = parts.scale, parts.asked.mesh(degree=3, elements=-1)
-    if not isinstance(parts.substrate, Plane) or parts.substrate.contact_angle == 180.0:
-        raise SceneError(
-            "particle: not available yet on a droplet on spheres, or at 180 degrees on a plane"
-        )
-    if parts.contact_line not in ("auto", "trimmed"):
-        raise SceneError(
-            f'solver.contact_line = "{parts.contact_line}": not available yet with particles, '
-            'whose lines are "trimmed"; leave it out'
-        )
-    if parts.law.penalty is not None or parts.start is not None or mesh.space != "bspline":
-        raise SceneError(
-            "particle: a droplet with particles needs the scene's own start, no penalty and space "
-            '"bspline"'
-        )
-    local = tuple(scale.local_sphere(each) for each in parts.particles)
-    for i, (each, given) in enumerate(zip(local, parts.particles, strict=True)):
-        if each.center[2] < each.radius * (1.0 - 1e-9):
-            raise SceneError(
-                f"particle[{i}].center = {list(given.center)}: "
-                f"{each.center[2] * scale.length:g} above the plane, less than its radius "
-                f"{given.radius:g}: it reaches into the substrate"
-            )
-    model = mirrored_model(local, _sector(mesh, parts.bond).model)
-    if mesh.model is not None and MODELS.index(mesh.model) > MODELS.index(model):
-        raise SceneError(
-            f'discretization.model = "{mesh.model}": the particles have no such mirror planes; '
-            f'"{model}" is the smallest model here'
-        )
-    sector = Sector(mesh.model or model)
-    rest = _foot(parts.substrate, parts.liquid, scale.length, parts.down)
-    patch = round_patch(of_pancake(rest.pancake), local, mesh, 2 * sector.copies)
-    start = patch.surface(of_pancake(rest.pancake))
-    mesh = replace(mesh, elements=start.space.bases[1].elements)
-    solid = crowd(None, parts.particles, scale.length)
-    toward = towards_liquid(start, local, 1.0) @ scale.axes.T
-    line = TrimmedContactLine(parts.liquid.surface_tension, solid, toward)
-    surface = start.moved(scale.to_world(start.points))
-
-    # far from the line its conormals may point against the membrane's normals
-    support = [Sliding("xi2=0", fade=4)]
-
-    def from_alone(alone: Surface) -> Surface:
-        """Start, in the scene's scale, from the droplet without particles."""
-        return patch.surface(of_droplet(alone))
-
-    return Foot(surface, sector, mesh, [rest.line, line], support, start_from=from_alone)
 
 
 def _on_an_area(parts: Question) -> Foot:
@@ -200,7 +146,8 @@ def _on_an_area(parts: Question) -> Foot:
     lies = attracts or least == 180.0
     unit_law = scale.length**2 / scale.tension
     stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
-    skin = whole_skin(parts.down, unit, length, mesh.degree, elements, lies, parts.start, stiffness)
+    pattern = Pattern(length, cell_of(local), lies, least == 180.0, stiffness)
+    skin = whole_skin(parts.down, unit, pattern, mesh.degree, elements, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
@@ -209,9 +156,17 @@ def _on_an_area(parts: Question) -> Foot:
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
     # contact lines lie in the part of the membrane that takes no part in shifts
     above = 0.0 if lies else 2.0 * largest_radius(local)
+    if skin.narrow:
+        # where the membrane meets point supports it moves vertically only
+        above = float(skin.points[skin.directions[:, 2] == -1.0, 2].max())
     # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
-    foot = Foot(surface, sector, mesh, [parts.law], supports, directions=skin.directions)
+    law = parts.law
+    if skin.narrow:
+        law = replace(law, point_supports=True)
+    elif skin.many and pattern.repels and law.penalty is None:
+        law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
+    foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
     if attracts:
@@ -258,7 +213,7 @@ def _through_one(parts: Question) -> Foot:
     points[:, 2] += lowest - cap.radius * (1.0 + np.cos(cap.turn))
     line = TrimmedContactLine(parts.liquid.surface_tension, solid)
     surface = Surface(space, scale.to_world(points))
-    return Foot(surface, _sector(mesh, parts.bond), mesh, [line], directions=directions)
+    return Foot(surface, sector_of(mesh, parts.bond), mesh, [line], directions=directions)
 
 
 BALL_ELEMENTS = 48
@@ -311,15 +266,15 @@ def _on_the_plane(parts: Question) -> Foot:
     """A flat foot at 180 degrees: the liquid-gas surface alone, which leaves the plane
     tangentially where its edge is found to be."""
     gamma, scale, bond = parts.liquid.surface_tension, parts.scale, parts.down
-    mesh, sector = parts.asked.mesh(), _sector(parts.asked.mesh(), parts.bond)
+    mesh, sector = parts.asked.mesh(), sector_of(parts.asked.mesh(), parts.bond)
     if not bond > 0 or parts.bond[:2].any():
         raise SceneError(
             "substrate.contact_angle = 180, gravity: on a plane only gravity straight towards it "
             "holds a droplet at 180 degrees; give such gravity or an angle < 180"
         )
-    foot = _foot(Plane(STEEPEST), parts.liquid, scale.length, bond)
+    foot = rest_of(Plane(STEEPEST), parts.liquid, scale.length, bond)
     length = foot.pancake.length
-    rim = estimated_foot(least_energy_pancake(180.0, bond, BALL, steepest=180.0), bond, BALL)
+    rim = rounded(bond, BALL).foot
     # the foot bends over its own radius or the capillary length, whichever is shorter
     first = min(3.5 / (np.sqrt(bond) * length), (4.0 * rim / length) ** 0.75)
     grading = Grading(float(min(1.0, first)))
@@ -348,7 +303,7 @@ def with_rim(surface: Surface, radius: float, scale: Scale) -> Surface:
     return surface.moved(scale.to_world(points))
 
 
-def _sector(mesh: Mesh, bond: Array) -> Sector:
+def sector_of(mesh: Mesh, bond: Array) -> Sector:
     """The model asked for, or the smallest that gravity's direction allows."""
     tiny = 1e-14 * float(np.abs(bond).max())
     along_x, along_y = (abs(float(b)) > tiny for b in bond[:2])
@@ -364,7 +319,7 @@ def _sector(mesh: Mesh, bond: Array) -> Sector:
 
 
 @dataclass(frozen=True, eq=False)
-class _Rest:
+class Rest:
     """How a drop stands on its substrate.
 
     Attributes
@@ -379,16 +334,16 @@ class _Rest:
     support: Sliding
 
 
-def _foot(substrate: Plane | Sphere, liquid: Liquid, length: float, bond: float) -> _Rest:
+def rest_of(substrate: Plane | Sphere, liquid: Liquid, length: float, bond: float) -> Rest:
     gamma, angle, unit = liquid.surface_tension, substrate.contact_angle, 4.0 * np.pi / 3.0
     if isinstance(substrate, Plane):
         pancake = least_energy_pancake(angle, bond, unit)
-        return _Rest(pancake, 0.0, PlaneContactLine(gamma, angle), Sliding("xi2=0"))
+        return Rest(pancake, 0.0, PlaneContactLine(gamma, angle), Sliding("xi2=0"))
     radius = substrate.radius / length
     polar, cap = drop_on_sphere(angle, radius, unit)
     line = SphereContactLine(gamma, substrate)
     lift = -2.0 * radius * np.sin(0.5 * polar) ** 2
-    return _Rest(cap, float(lift), line, Sliding("xi2=0", substrate))
+    return Rest(cap, float(lift), line, Sliding("xi2=0", substrate))
 
 
 def _grading(contact_angle: float, bond: float, length: float) -> Grading:
@@ -402,7 +357,7 @@ def _grading(contact_angle: float, bond: float, length: float) -> Grading:
     return Grading(float(first))
 
 
-def _start(foot: _Rest, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
+def _start(foot: Rest, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
     pancake = foot.pancake
 
     def profile(t: Array) -> tuple[Array, Array, Array]:

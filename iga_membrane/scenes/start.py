@@ -9,6 +9,7 @@ volume the one with the least energy is close enough to any sessile drop for New
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -93,6 +94,99 @@ def least_energy_pancake(
             flat = float(flats[k, 0] * radius[k])
             best = (energy[k], Pancake(flat, float(radius[k]), float(aspect), float(turn)))
     return best[1]
+
+
+@dataclass(frozen=True, eq=False)
+class FlatDrop:
+    """Axisymmetric drop that lies on a plane at 180 degrees (tension 1).
+
+    Attributes
+    ----------
+    r, z, turn : (k,) profile from the foot's rim to the top, with its inclination.
+    pressure : at the plane.
+    foot : contact radius.
+    """
+
+    r: Array
+    z: Array
+    turn: Array
+    pressure: float
+    foot: float
+
+
+def flat_drop(bond: float, volume: float) -> FlatDrop:
+    """The drop at 180 degrees on a plane, by Young and Laplace's equation from its top.
+
+    Parameters
+    ----------
+    bond : density times gravity, > 0.
+
+    Notes
+    -----
+    ``r' = cos(turn), depth' = sin(turn), turn' = p_top + bond depth - sin(turn) / r`` by arc
+    length; ``p_top`` is what the volume asks for.
+    """
+    from scipy.integrate import solve_ivp
+    from scipy.optimize import brentq
+
+    top = 1.0
+
+    def rates(s: float, state: Array) -> list[float]:
+        r, depth, turn, _ = state
+        bend = top + bond * depth - np.sin(turn) / r
+        return [np.cos(turn), np.sin(turn), bend, np.pi * r * r * np.sin(turn)]
+
+    def closed(s: float, state: Array) -> float:
+        return float(np.pi - state[2])
+
+    closed.terminal = True  # type: ignore[attr-defined]
+
+    def path(log: float, dense: bool = False) -> Any:
+        nonlocal top
+        top = float(np.exp(log))
+        first = 1e-4 * min(1.0 / top, bond**-0.5)
+        start = [first, 0.25 * top * first**2, 0.5 * top * first, 0.0]
+        longest = 1e3 * (1.0 + bond**-0.5)
+        return solve_ivp(rates, (0.0, longest), start, events=closed, dense_output=dense,
+                         rtol=1e-8, atol=1e-12)  # fmt: skip
+
+    def missing(log: float) -> float:
+        return float(np.log(path(log).y[3, -1] / volume))
+
+    ball = float(np.log(2.0 * (4.0 * np.pi / (3.0 * volume)) ** (1.0 / 3.0)))
+    low = ball - 1.0
+    while missing(low) < 0.0:
+        low -= 1.0
+    found = path(float(brentq(missing, low, ball + 0.7, rtol=1e-9)), dense=True)
+    r, depth, turn, _ = found.sol(np.linspace(found.t[-1], 0.0, 2001))
+    return FlatDrop(r, depth[0] - depth, turn, top + bond * float(depth[0]), float(r[0]))
+
+
+def rounded(bond: float, volume: float) -> FlatDrop:
+    """The pancake of least energy in the place of the drop on a plane."""
+    pancake = least_energy_pancake(180.0, bond, volume, steepest=180.0)
+    pressure = estimated_pressure(pancake, bond, volume)
+    u = np.linspace(pancake.turn, 0.0, 2001)
+    rho, a = pancake.radius, pancake.aspect
+    r, z = pancake.flat + rho * np.sin(u), rho * a * (np.cos(u) - np.cos(pancake.turn))
+    inside = r >= 1e-3 * rho
+    turn = np.pi - np.arctan2(a * np.sin(u), -np.cos(u))
+    foot = float(np.sqrt(bond * volume / (np.pi * pressure)))
+    return FlatDrop(r[inside], z[inside], turn[inside], pressure, foot)
+
+
+def estimated_pressure(pancake: Pancake, bond: float, volume: float) -> float:
+    """Pressure at a plane at 180 degrees, by the virial ``3 p V = 2 E_surf + 4 E_grav`` of the
+    start."""
+    u, w = gauss(20)
+    angle = pancake.turn * u
+    r = pancake.flat + pancake.radius * np.sin(angle)
+    z = pancake.radius * pancake.aspect * (np.cos(angle) - np.cos(pancake.turn))
+    rate = pancake.radius * pancake.turn * w
+    area = 2.0 * np.pi * r @ (rate * np.hypot(np.cos(angle), pancake.aspect * np.sin(angle)))
+    area += 2.0 * np.pi * pancake.flat**2
+    weight = bond * np.pi * (r**2 * z) @ (rate * pancake.aspect * np.sin(angle))
+    return float((2.0 * area + 4.0 * weight) / (3.0 * volume))
 
 
 def drop_on_sphere(contact_angle: float, radius: float, volume: float) -> tuple[float, Pancake]:

@@ -45,6 +45,13 @@ class Solid(Protocol):
         """(...) radii of spheres by their numbers."""
 
 
+class Asperities(Solid, Protocol):
+    """Many spheres."""
+
+    def within(self, reach: float) -> Index:
+        """Numbers of the spheres whose centres lie within a distance of the z axis."""
+
+
 def nearest_of_balls(points: Array, centers: Array, radii: Array, which: Index) -> Nearest:
     """Nearest surface where it is known which ball (..., 3), (...) is nearest."""
     away = points - centers

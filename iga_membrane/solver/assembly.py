@@ -77,17 +77,16 @@ class Assembly(Functional):
         return float(np.linalg.norm(moved, axis=-1).max(initial=0.0))
 
     def near_contact(self, surface: Surface, displacement: Array) -> float:
-        """Largest displacement over the contact length, of control points near the solid."""
+        """Largest displacement over the contact length near the solid: of control points, or as in
+        :meth:`largest`."""
         if self.contact is not None:
-            near, length = self.contact.near(surface.points), self.contact.length
+            moved, length = displacement[self.contact.near(surface.points)], self.contact.length
         elif self.trim is not None:
             rows = self.table.part(np.flatnonzero(self.trim.near(surface.points)))
-            moved = np.linalg.norm(rows.values @ displacement[rows.functions], axis=-1)
-            return float(moved.max(initial=0.0)) / self.trim.length
+            moved, length = rows.values @ displacement[rows.functions], self.trim.length
         else:
             return 0.0
-        moved = np.linalg.norm(displacement[self.table.functions[near]], axis=-1)
-        return float(moved.max(initial=0.0)) / length
+        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0)) / length
 
     def relaxed(self, surface: Surface, motion: Motion) -> Surface:
         """The same liquid; what lies inside a solid, and on which nothing depends, smoothed."""
@@ -115,7 +114,7 @@ class Assembly(Functional):
         """Whether the multipliers of contact hold the gap; they are updated when the last step
         ``near`` the solid (over the contact length) is small against what the contact still gives.
         """
-        if self.contact is None:
+        if self.contact is None or not self.contact.exact:
             return True
         touch = self.contact.touch(surface.points)
         if near * self.contact.length <= STEADY * self.contact.give(touch):

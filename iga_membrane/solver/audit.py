@@ -33,6 +33,7 @@ from .assembly import TINY
 from .contact import ContactSet
 from .contact_line import ContactLine, contact_line, vertical_forces
 from .measures import sphere_of
+from .point_supports import PointSupports
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,10 @@ class Audit:
         return {name: value for name, value in vars(self).items() if name != "deepest"}
 
 
+AT_A_TIME = 5000
+"""Elements that are checked at a time, for their memory."""
+
+
 def audit(
     scene: Scene,
     surface: Surface,
@@ -92,21 +97,25 @@ def audit(
     contact : of a membrane that lies on a solid, with its multipliers.
     """
     space, sector = surface.space, scene.sector
-    table = sector_table(space, sector, (2 * points[0], 2 * points[1]))
-    k = surface.on(table)
     terms = scene.local_terms()
     tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
-    area = k.area_element * table.weights
-    # int gamma a^alpha . u_,alpha dA + int e u . n dA: membrane and pressure
-    dual = tension * area[..., None, None] * k.dual_tangents
-    load = (_density(body, k.position) * area)[..., None] * k.normal
-    force = (
-        table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
-        + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
-        + table.values.transpose(0, 2, 1) @ load
-    )
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
-    scatter(total, absolute, motion, table.functions, force)
+    whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
+    inside = 0.0
+    for first in range(0, len(whole.functions), AT_A_TIME):
+        table = whole.part(slice(first, first + AT_A_TIME))
+        k = surface.on(table)
+        area = k.area_element * table.weights
+        # int gamma a^alpha . u_,alpha dA + int e u . n dA: membrane and pressure
+        dual = tension * area[..., None, None] * k.dual_tangents
+        load = (_density(body, k.position) * area)[..., None] * k.normal
+        force = (
+            table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
+            + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
+            + table.values.transpose(0, 2, 1) @ load
+        )
+        scatter(total, absolute, motion, table.functions, force)
+        inside += sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
     if contact is not None:
         push = contact.push(contact.touch(surface.points))
         pull = -contact.table.values.transpose(0, 2, 1) @ push
@@ -118,9 +127,10 @@ def audit(
         scatter(total, absolute, motion, edge.functions, edge_pull)
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
-    inside = sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
     if contact is not None:
-        depth, place = _depth(surface, contact, points)
+        depth, place = 0.0, None
+        if not isinstance(contact, PointSupports):
+            depth, place = _depth(surface, contact, points)
         weight = body.gradient[2] * inside
         carried = -sector.copies * float(push[..., 2].sum())
         if scene.line_inside is not None:

@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index
-from ..solids import Nearest, Plane, Solid
+from ..solids import Nearest, Plane, Solid, Spheres
 from ..splines import Space, Table
+from ..surface.surface import Surface
 
 SOFT = 0.025
 """First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
@@ -36,6 +37,12 @@ LIFTS = 10
 """How often the contact points are lifted at most."""
 RANGE = 1.0
 """Range of adhesion over the gap at which a membrane has left the solid after one element."""
+ACROSS = 4
+"""Elements across a wet asperity that resolve it."""
+HIGH = 4.0
+"""Height above spheres, over the contact length, from which they are not searched."""
+POINTS = 6
+"""Quadrature points in contact on every wet asperity, in the mean, that resolve its spot."""
 SETTLED = 1e-6
 """Gap of an active point over the contact length that counts as none."""
 
@@ -96,6 +103,7 @@ class ContactSet:
         self._space, self._depth, self.adhesion = space, depth, adhesion
         self._lift = np.zeros(area.shape)
         self._lifts = LIFTS
+        self._known: tuple[Array, Nearest] | None = None
         self.length = min(solid.scale, 1.0)
         self.exact = penalty is None
         self.multipliers: Array = np.zeros(area.shape)
@@ -111,6 +119,11 @@ class ContactSet:
         self.settled = not self.exact
         self.rounds = 0
 
+    @property
+    def law(self) -> str:
+        """In a word."""
+        return "multipliers" if self.exact else "penalty"
+
     def begin(self) -> None:
         """Soft again and without lifts, from the multipliers at hand."""
         self.rounds = 0
@@ -120,7 +133,7 @@ class ContactSet:
 
     def touch(self, points: Array) -> Touch:
         """Gaps and tractions for control points (count, 3)."""
-        at = self.solid.nearest(self.table.values @ points[self.table.functions])
+        at = self._nearest(points)
         gap = at.gap - self._lift
         traction = np.maximum(self.multipliers - gap / self.delta, 0.0)
         if not self.adhesion:
@@ -132,9 +145,34 @@ class ContactSet:
         rise = self.adhesion / self._range**2 * (4.0 - 12.0 * s**2) * inside
         return Touch(at, traction, (1.0 - s**2) ** 2, pull, rise)
 
+    def _nearest(self, points: Array) -> Nearest:
+        """Nearest surfaces at the contact points, known for the last control points."""
+        if self._known is None or self._known[0] is not points:
+            x = self.table.values @ points[self.table.functions]
+            self._known = points, self._nearest_of(x)
+        return self._known[1]
+
+    def _nearest_of(self, x: Array) -> Nearest:
+        """Exact for points (..., 3) near spheres; high above them only their height counts, since
+        searching there costs far more than near them."""
+        if not isinstance(self.solid, Spheres):
+            return self.solid.nearest(x)
+        top = float((np.asarray(self.solid.centers)[:, 2] + self.solid.radii).max())
+        low = x[..., 2] <= top + HIGH * self.length
+        up, none = np.zeros_like(x), np.zeros(x.shape[:-1])
+        up[..., 2] = 1.0
+        at = Nearest(x[..., 2] - top, up, none, np.full(x.shape[:-1], -1))
+        near = self.solid.nearest(x[low])
+        for known, exact in zip(vars(at).values(), vars(near).values(), strict=True):
+            known[low] = exact
+        return at
+
     def gained(self, points: Array) -> float:
         """Energy of adhesion that is gained (one sector)."""
         return float(self.adhesion * (self.touch(points).gain * self.area).sum())
+
+    def follow(self, surface: Surface) -> None:
+        """Take note of a mesh that has moved sideways; gaps are measured wherever it is."""
 
     def push(self, touch: Touch) -> Array:
         """(elements, points, 3) forces of the solid on the membrane."""
@@ -162,12 +200,34 @@ class ContactSet:
         rows, at = table.values[near], touch.at
         d = directions[table.functions[near]]
         bent = self.area[near] * (touch.traction - touch.pull)[near] * at.bend[near]
-        soft = np.broadcast_to(self.delta, self.area.shape)[near]
-        stiff = self.area[near] * ((touch.traction[near] > 0) / soft + touch.rise[near])
+        stiff = (self.area * self.stiffness(touch))[near]
         u = rows * (at.normal[near] @ d.transpose(0, 2, 1))
         blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
         blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))
         return near, blocks
+
+    def stiffness(self, touch: Touch) -> Array:
+        """(elements, points) derivative of the traction by the depth."""
+        return np.asarray((touch.traction > 0) / self.delta + touch.rise)
+
+    def objection(self, touch: Touch) -> str | None:
+        """Why the mesh is too coarse for this law, or None."""
+        across = self.across(touch)
+        if across < ACROSS:
+            return (
+                f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
+                "discretization.elements"
+            )
+        held = touch.traction > 0.0
+        if self.exact or not (touch.at.bend[held] > 0.0).any():
+            return None
+        each = held.sum() / len(np.unique(touch.at.which[held]))
+        if each < POINTS:
+            return (
+                f"a wet spot has {each:.1f} quadrature points in the mean, {POINTS} are needed: "
+                "take more discretization.elements, or fewer, for point supports"
+            )
+        return None
 
     def across(self, touch: Touch) -> float:
         """Fewest elements across the smallest sphere, where the membrane lies on one."""
@@ -181,9 +241,10 @@ class ContactSet:
         """Depth by which the stiffest contact would give way without multipliers."""
         return float((self.delta * touch.traction).max(initial=0.0))
 
-    def near(self, points: Array) -> Array:
-        """(elements,) whether an element is near the solid."""
-        return np.asarray((self.touch(points).at.gap < 2.0 * self.length).any(axis=1))
+    def near(self, points: Array) -> Index:
+        """(k, local) functions of the elements near the solid."""
+        close = (self.touch(points).at.gap < 2.0 * self.length).any(axis=1)
+        return self.table.functions[close]
 
     def tighten(self, touch: Touch, points: Array) -> None:
         """Take the tractions as multipliers and reduce ``delta``; lift points that dip too deep."""

@@ -92,6 +92,7 @@ def _footing(
     foot = np.pi * found["contact_radius"] ** 2 if "contact_radius" in found else 0.0
     wet = float(feet.areas.sum()) * scale.length**2
     return {
+        "law": "contact lines" if assembly.contact is None else assembly.contact.law,
         "wet_solids": len(feet.which),
         "asperities": rows,
         "wet_area": wet,

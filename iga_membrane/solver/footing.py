@@ -8,12 +8,13 @@ import numpy as np
 
 from ..arrays import Array, Index, Mask
 from ..scenes.scene import Scene
-from ..surface.sector import mirrors
+from ..surface.sector import in_sector, mirrors
 from ..surface.surface import Surface
 from ..terms import BodyDensity
 from ..terms.trimmed import CapDensity, line_density, wet_integral
 from ..terms.variations import element_points
 from .assembly import Assembly
+from .point_supports import PointSupports
 from .trim import Trim
 
 
@@ -211,28 +212,40 @@ def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     """How many spheres near the membrane have their centre inside the liquid; where contact lines
     are inside the membrane, of those that have none.
 
-    The solid angle of a closed membrane from a point is 4 pi inside and 0 outside; an open
-    membrane over a cell must lie above the centre.
+    Seen from its nearest point of the membrane, a centre outside the liquid lies on the side of the
+    normal; for centres in the sector that point is there, too.
     """
     at = element_points(assembly.table, surface.points)
     trim, contact = assembly.trim, assembly.contact
     on = trim or contact
     assert on is not None
     beside = on.solid.nearest(at.x)
-    close = np.unique(beside.which[beside.gap < 2.0 * on.length])
-    near = close[close >= 0]
+    behind = (beside.normal * at.c).sum(axis=-1) > 0.0
+    order = np.lexsort((beside.gap.ravel(), beside.which.ravel()))
+    which, first = np.unique(beside.which.ravel()[order], return_index=True)
+    nearest = order[first]
+    close = (which >= 0) & (beside.gap.ravel()[nearest] < 2.0 * on.length)
     if trim is not None:
-        near = np.setdiff1d(near, trim.on_line(surface.points).at.which)
-    if not len(near):
+        close &= ~np.isin(which, trim.on_line(surface.points).at.which)
+    wrong = which[close][behind.ravel()[nearest[close]]]
+    return _in_sector(scene, assembly, surface, wrong)
+
+
+def unsupported(scene: Scene, assembly: Assembly, surface: Surface) -> int:
+    """How many spheres of the sector that are no point supports a membrane on point supports has
+    met."""
+    contact = assembly.contact
+    if not isinstance(contact, PointSupports):
         return 0
-    centers = np.asarray(on.solid.center_of(near)).reshape(-1, 3)
-    x, c = at.x.reshape(-1, 3), (at.c * assembly.table.weights[..., None]).reshape(-1, 3)
-    count = 0
-    for center in centers:
-        angle = 0.0
-        for m in mirrors(scene.sector):
-            away = x - center @ m
-            distance = np.sqrt(np.einsum("ki,ki->k", away, away))
-            angle += float((np.einsum("ki,ki->k", away, c) / distance**3).sum())
-        count += angle > 2.0 * np.pi
-    return count
+    x = assembly.table.values @ surface.points[assembly.table.functions]
+    at = contact.solid.nearest(x)
+    met = np.setdiff1d(at.which[at.gap < 0.0], contact.which)
+    return _in_sector(scene, assembly, surface, met[met >= 0])
+
+
+def _in_sector(scene: Scene, assembly: Assembly, surface: Surface, which: Index) -> int:
+    """How many spheres have their centres in the sector that is computed."""
+    on = assembly.trim or assembly.contact
+    assert on is not None
+    centers = np.asarray(on.solid.center_of(which)).reshape(-1, 3)
+    return int(in_sector(surface.space, scene.sector, centers, 1e-9 * on.length).sum())

@@ -142,6 +142,14 @@ class Functional:
             return self.rows.wide
         return self.rows.with_shifts(self.contact.table)
 
+    def anew(self, surface: Surface) -> Surface:
+        """The start, as far away as the top of a surface has been shifted."""
+        start = self.spines.anew(surface)
+        if self.contact is not None:
+            self.contact.follow(start)
+            self.contact_rows = self._contact_rows()
+        return start
+
     def begin_step(self, surface: Surface, term: Stabilization) -> None:
         """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
         eq. (23), and tractions of the penalty count per area of it."""

@@ -14,7 +14,7 @@ from ..terms import Centroid, Contact
 from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line
-from .footing import contacts, engulfed
+from .footing import contacts, engulfed, unsupported
 from .measures import sphere_of
 from .stability import Stability
 from .status import Status
@@ -127,10 +127,6 @@ def defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
     return None
 
 
-ACROSS = 4
-"""Elements across a wet asperity that resolve it."""
-
-
 def contact_objection(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[Status, str | None, str] | None:
@@ -145,13 +141,16 @@ def contact_objection(
             "the liquid touches the plane under the asperities",
         )
     contact = assembly.contact
-    across = np.inf if contact is None else contact.across(contact.touch(surface.points))
-    if across < ACROSS:
+    coarse = None if contact is None else contact.objection(contact.touch(surface.points))
+    if coarse is not None:
+        return Status.UNDERRESOLVED, None, coarse
+    beside = unsupported(scene, assembly, surface)
+    if beside:
         return (
             Status.UNDERRESOLVED,
             None,
-            f"a wet asperity has {across:.1f} elements across, {ACROSS} are needed: take more "
-            "discretization.elements",
+            f"the membrane has come down on {beside} asperities beside its finely meshed foot, "
+            "which are no supports there: hold the droplet (droplet.hold) or start nearer to it",
         )
     if assembly.trim is not None and len(feet.which):
         young = assembly.trim.term.cosine(feet.which)

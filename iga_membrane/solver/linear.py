@@ -43,9 +43,12 @@ class SparsePattern:
     def __init__(self, size: int, groups: Sequence[Index]) -> None:
         self.size = size
         keys = np.concatenate([_keys(size, unknowns) for unknowns in groups])
-        self.entries = np.unique(keys[keys < size * size])
-        columns, self.rows = np.divmod(self.entries, size)
-        self.starts = np.searchsorted(columns, np.arange(size + 1))
+        columns, rows = np.divmod(keys[keys < size * size], size)
+        filled = csc_array((np.ones(len(rows), bool), (rows, columns)), (size, size))
+        filled.sum_duplicates()  # sorts, several times faster than unique keys
+        self.rows, self.starts = filled.indices, filled.indptr
+        columns = np.repeat(np.arange(size), np.diff(self.starts))
+        self.entries = columns * size + self.rows
         self.diagonal = np.searchsorted(self.entries, np.arange(size) * (size + 1))
         self._slots: dict[bytes, Index] = {}
 
@@ -192,7 +195,7 @@ class Bordered:
 
     def last(self, count: int) -> Array:
         """(count, count) Hessian of the last unknowns when all the others follow them."""
-        unit = np.eye(self._n)[:, self._n - count :]
+        unit = np.eye(self._n, count, count - self._n)
         zero = np.zeros(self._m)
         follow = [self.solve(column, zero)[0][self._n - count :] for column in unit.T]
         return np.linalg.inv(0.5 * (np.array(follow) + np.array(follow).T))

@@ -357,20 +357,28 @@ def _equator(surface: Surface, line: ContactLine) -> float:
 
 
 def _farthest(surface: Surface, measure: Callable[[Array], Array]) -> Array:
-    """Point of the surface with the largest measure, by zooming in on it."""
+    """Point of the surface with the largest measure, by zooming in on the best of a few."""
     ring, meridian = surface.space.bases
-    low = np.array([ring.breaks[0], meridian.breaks[0]])
-    high = np.array([ring.breaks[-1], meridian.breaks[-1]])
-    ends = low.copy(), high.copy()
-    best = surface.net[0, -1]
-    for steps in ((9, 41), *[(5, 11)] * 8):
-        axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, steps, strict=True)]
-        x = surface.at(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1), 1).position
-        values = measure(x)
-        i, j = np.unravel_index(int(values.argmax()), values.shape)
-        if values[i, j] >= measure(best):
-            best = x[i, j]
-        middle = np.array([axes[0][i], axes[1][j]])
-        reach = 1.01 * np.array([axis[1] - axis[0] for axis in axes])
-        low, high = np.maximum(middle - reach, ends[0]), np.minimum(middle + reach, ends[1])
+    first = np.array([ring.breaks[0], meridian.breaks[0]])
+    last = np.array([ring.breaks[-1], meridian.breaks[-1]])
+    axes = [np.linspace(a, b, n) for a, b, n in zip(first, last, (9, 41), strict=True)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    values = measure(surface.at(grid, 1).position)
+    best, most = np.zeros(3), -np.inf
+    # the corners of a pillow are one point
+    for start in grid[np.argsort(-values)[:CORNERS]]:
+        middle, reach = start, np.array([axis[1] - axis[0] for axis in axes])
+        for _ in range(8):
+            low, high = np.maximum(middle - reach, first), np.minimum(middle + reach, last)
+            near = [np.linspace(a, b, n) for a, b, n in zip(low, high, (5, 11), strict=True)]
+            xi = np.stack(np.meshgrid(*near, indexing="ij"), axis=-1).reshape(-1, 2)
+            x = surface.at(xi, 1).position
+            values = measure(x)
+            k = int(values.argmax())
+            middle, reach = xi[k], 1.01 * np.array([axis[1] - axis[0] for axis in near])
+            if values[k] >= most:
+                best, most = x[k], values[k]
     return best
+
+
+CORNERS = 4

@@ -6,12 +6,14 @@ import numpy as np
 
 from ..arrays import Index
 from ..scenes.scene import Scene
+from ..solids import SphereLattice, Spheres
 from ..splines import Table
 from ..surface.sector import mirrors, sector_elements, sector_table
 from ..surface.surface import Surface
-from ..terms import Contact, TrimmedContactLine
+from ..terms import AreaTerm, Contact, TrimmedContactLine
 from ..terms import variations as vary
 from .contact import ContactSet
+from .point_supports import PointSupports
 from .trim import Trim
 
 
@@ -36,10 +38,13 @@ def contact_of(scene: Scene, surface: Surface, points: tuple[int, int]) -> Conta
     term = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
     if term is None:
         return None
+    elements, _ = sector_elements(surface.space, scene.sector)
+    if term.point_supports and isinstance(term.solid, (SphereLattice, Spheres)):
+        tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
+        return PointSupports(scene, term.solid, surface, tension, elements)
     points = (1, 1) if term.penalty is None else points
     table = sector_table(surface.space, scene.sector, points)
     area = vary.element_points(table, surface.points).area * table.weights
-    elements, _ = sector_elements(surface.space, scene.sector)
     law = term.penalty, term.depth, term.adhesion
     return ContactSet(term.solid, table, area, *law, surface.space, elements)
 
@@ -71,7 +76,7 @@ def same_law(one: Contact | None, other: Contact | None) -> bool:
     """Whether two laws of contact are the same, for the same solid."""
     if one is None or other is None or type(one.solid) is not type(other.solid):
         return False
-    laws = [(c.penalty, c.depth, c.adhesion) for c in (one, other)]
+    laws = [(c.penalty, c.depth, c.adhesion, c.point_supports) for c in (one, other)]
     fields = [vars(c.solid) for c in (one, other)]
     return laws[0] == laws[1] and all(
         np.array_equal(fields[0][key], fields[1][key])

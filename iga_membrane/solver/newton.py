@@ -207,7 +207,7 @@ def _iterate(
             ahead = np.linalg.norm(lag) > LAG * assembly.contact.length
             # one that rolls back is near its place
             if ahead and assembly.rounds == 0 and rolled < ROLLS and lag @ way >= 0.0:
-                result.surface, steady = assembly.spines.anew(moved), False
+                result.surface, steady = assembly.anew(moved), False
                 left, rolled, way = options.max_iterations, rolled + 1, lag
         result.multipliers = result.multipliers + taken * (
             direction.multipliers - result.multipliers

@@ -77,6 +77,8 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     assembly : of that scene.
     surface : the nearby equilibrium, in the scene's scale.
     """
+    from scipy.spatial import cKDTree
+
     trim = assembly.trim
     assert trim is not None
     solid = trim.term.solid
@@ -94,9 +96,11 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     deep = np.maximum(depth, wanted)
     spot = 0.9 * np.sqrt(np.maximum(2.0 * radii * deep - deep**2, 0.0))
     fall = np.zeros(len(surface.points))
+    places = cKDTree(surface.points[:, :2])
     for k, center in enumerate(centers):
-        fall += _bump(surface.points, center, WIDE * radii[k], press[k])
-        fall += _bump(surface.points, center, spot[k], DIMPLE * spot[k])
+        near = np.array(places.query_ball_point(center[:2], WIDE * radii[k]), int)
+        fall[near] += _bump(surface.points[near], center, WIDE * radii[k], press[k])
+        fall[near] += _bump(surface.points[near], center, spot[k], DIMPLE * spot[k])
     points = surface.points - np.outer(fall, [0.0, 0.0, 1.0])
     first_particle = trim.term.count - len(scene.particles)
     for k in range(len(scene.particles)):

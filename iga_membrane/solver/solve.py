@@ -129,6 +129,7 @@ def _check_memory(scene: Scene, options: SolverOptions) -> None:
     points = options.quadrature**2 if options.quadrature else local
     need = 8.0 * elements * (14.0 * points * local + 6.0 * local**2)
     need += 4e3 * space.count / scene.sector.copies
+    log.info("%d elements need about %.2g GB of memory", elements, need / 1e9)
     if need > options.max_memory_gb * 1e9:
         raise SceneError(
             f"solver.max_memory_gb = {options.max_memory_gb:g}: this mesh needs about "

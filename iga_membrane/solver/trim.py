@@ -161,7 +161,7 @@ class Trim:
         least, most = gap.min(axis=1), gap.max(axis=1)
         sign = np.where(least > reach, 1, -1)
         near = np.flatnonzero((least <= reach) & (most >= -reach))
-        nets = bezier_net(Surface(self.space, points))[self.elements[near]]
+        nets = bezier_net(Surface(self.space, points), self.elements[near])
         patches = BezierPatches(nets[..., :3])
 
         def level(rows: Index, u: Array) -> tuple[Array, Array, Index]:

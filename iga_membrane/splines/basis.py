@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -65,6 +66,12 @@ class Basis:
     def sizes(self) -> Array:
         """(m,) element lengths."""
         return np.diff(self.breaks)
+
+    @cached_property
+    def alike(self) -> bool:
+        """Whether all elements have the same functions."""
+        rounding = 1e-9 * self.sizes[0]
+        return bool((self.operators == self.operators[0]).all() and np.ptp(self.sizes) <= rounding)
 
     def on_elements(self, u: Array, derivative: int = 0) -> Array:
         """Values at the same local points of every element: (m, len(u), p + 1)."""

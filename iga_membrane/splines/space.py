@@ -94,13 +94,18 @@ class Space:
         chosen = np.arange(self.elements) if elements is None else elements
         e1, e2 = np.divmod(chosen, self.bases[1].elements)
         orders = 2 if second else 1
-        one = [self.bases[0].on_elements(u, k)[e1] for k in range(orders + 1)]
-        two = [self.bases[1].on_elements(v, k)[e2] for k in range(orders + 1)]
+        # elements that are all alike share one table
+        own = slice(1) if self._alike else slice(None)
+        one = [self.bases[0].on_elements(u, k)[e1[own]] for k in range(orders + 1)]
+        two = [self.bases[1].on_elements(v, k)[e2[own]] for k in range(orders + 1)]
         rows: Rows = {}
         for i, j in _ORDERS[: 6 if second else 3]:
             product = one[i][:, :, None, :, None] * two[j][:, None, :, None, :]
-            rows[i, j] = product.reshape(len(chosen), len(local), -1)
-        rows = self.finished(rows, chosen)
+            rows[i, j] = product.reshape(len(product), len(local), -1)
+        rows = {
+            key: np.broadcast_to(row, (len(chosen), *row.shape[1:]))
+            for key, row in self.finished(rows, chosen[own]).items()
+        }
         h1, h2 = self.bases[0].sizes[e1], self.bases[1].sizes[e2]
         start = np.stack([self.bases[0].breaks[e1], self.bases[1].breaks[e2]], axis=-1)
         size = np.stack([h1, h2], axis=-1)
@@ -189,6 +194,12 @@ class Space:
         table = self.edge_table(edge)
         alive = np.abs(table.values).max(axis=1) > 1e-14
         return np.unique(table.functions[alive])
+
+    @property
+    def _alike(self) -> bool:
+        """Whether all elements have the same functions."""
+        plain = self.weights is None and not len(self.near)
+        return plain and all(basis.alike for basis in self.bases)
 
     @cached_property
     def abscissae(self) -> Array:

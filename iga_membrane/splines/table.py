@@ -18,7 +18,8 @@ class Table:
     Attributes
     ----------
     functions : (elements, local) global number of each local function.
-    values, d1, d2 : (elements, points, local) the functions and their first derivatives.
+    values, d1, d2 : (elements, points, local) the functions and their first derivatives; elements
+        that are all alike share one piece of memory.
     weights : (elements, points) quadrature weights in the parameter domain.
     parameters : (elements, points, 2) the points themselves.
     second : (3, elements, points, local) second derivatives 11, 12, 22, or None.
@@ -35,11 +36,15 @@ class Table:
     @cached_property
     def stacked(self) -> Array:
         """(elements, 3 points, local): values, d1 and d2 under each other, for one product."""
-        return np.concatenate([self.values, self.d1, self.d2], axis=1)
+        rows = [shared(row) for row in (self.values, self.d1, self.d2)]
+        one = np.concatenate(rows, axis=1)
+        return np.broadcast_to(one, (len(self.functions), *one.shape[1:]))
 
     def part(self, elements: slice | Index) -> Table:
         """First-order table of some of the elements."""
-        return Table(*(getattr(self, name)[elements] for name in _FIRST_ORDER))
+        plain = (getattr(self, name)[elements] for name in ("weights", "parameters"))
+        rows = (_some(row, elements) for row in (self.values, self.d1, self.d2))
+        return Table(self.functions[elements], *rows, *plain)
 
     def with_columns(self, columns: Index, functions: Index) -> Table:
         """Some local functions once more, under other numbers (elements, len(columns))."""
@@ -74,7 +79,17 @@ class Table:
         return other
 
 
-_FIRST_ORDER = ("functions", "values", "d1", "d2", "weights", "parameters")
+def shared(rows: Array) -> Array:
+    """Rows of one element only, (1, ...), where all elements share them."""
+    return rows[:1] if len(rows) and rows.strides[0] == 0 else rows
+
+
+def _some(rows: Array, elements: slice | Index) -> Array:
+    """Rows of some elements, shared where they were."""
+    if isinstance(elements, slice) or len(shared(rows)) == len(rows):
+        return rows[elements]
+    count = len(np.arange(len(rows))[elements])
+    return np.broadcast_to(rows[:1], (count, *rows.shape[1:]))
 
 
 @dataclass(frozen=True, eq=False)

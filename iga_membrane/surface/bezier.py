@@ -11,15 +11,19 @@ from ..splines.bernstein import bernstein
 from .surface import Surface
 
 
-def bezier_net(surface: Surface) -> Array:
-    """(elements, p1 + 1, p2 + 1, 4) homogeneous Bezier points ``(w x, w)`` of every element."""
+def bezier_net(surface: Surface, elements: Index | None = None) -> Array:
+    """(elements, p1 + 1, p2 + 1, 4) homogeneous Bezier points ``(w x, w)`` of some elements, or of
+    all."""
     space, net = surface.space, surface.net
     weights = np.ones(space.net_shape) if space.weights is None else space.weights
     homogeneous = np.concatenate([net * weights[..., None], weights[..., None]], axis=-1)
     one, two = space.bases
-    local = homogeneous[one.functions[:, None, :, None], two.functions[None, :, None, :]]
-    cells = np.einsum("eai,fbj,efabc->efijc", one.operators, two.operators, local, optimize=True)
-    return np.asarray(cells.reshape(-1, *cells.shape[2:]))
+    chosen = np.arange(space.elements) if elements is None else elements
+    e1, e2 = np.divmod(chosen, two.elements)
+    local = homogeneous[one.functions[e1][:, :, None], two.functions[e2][:, None, :]]
+    rows = one.operators[e1].transpose(0, 2, 1) @ local.reshape(*local.shape[:2], -1)
+    cells = two.operators[e2].transpose(0, 2, 1)[:, None] @ rows.reshape(local.shape)
+    return np.asarray(cells)
 
 
 @dataclass(frozen=True, eq=False)

@@ -60,6 +60,19 @@ def mirrors(sector: Sector) -> list[Array]:
     return images
 
 
+def in_sector(space: Space, sector: Sector, places: Array, rounding: float) -> Array:
+    """(k,) whether places (k, 3) lie in the part of space of one sector, or on its edge."""
+    x, y = places[:, 0], places[:, 1]
+    inside = np.ones(len(x), bool)
+    if sector.model != "full":
+        inside &= y >= -rounding
+    if sector.model in ("quarter", "eighth"):
+        inside &= x >= -rounding
+    if sector.model == "eighth":
+        inside &= (x - y if space.bases[0].periodic else y - x) >= -rounding
+    return inside
+
+
 def _mirror(fold: float) -> Array:
     turn = 2.0 * np.pi * fold
     cosine, sine = np.cos(turn), np.sin(turn)

@@ -25,12 +25,15 @@ class Contact(Term):
     depth : how deep the membrane may dip into the solid between contact points, over the radius
         of the smallest sphere (plane: over the scene's length).
     adhesion : energy per wetted area, ``gamma (1 + cos(theta))``.
+    point_supports : whether the mesh is too coarse for the wet spots, so that each asperity carries
+        the membrane at one point.
     """
 
     solid: Plane | Sphere | SphereLattice | Spheres
     penalty: float | None = None
     depth: float = 1e-2
     adhesion: float = 0.0
+    point_supports: bool = False
     name = "contact"
 
     def __post_init__(self) -> None:
@@ -42,4 +45,5 @@ class Contact(Term):
     def scaled(self, scale: Scale) -> Contact:
         eps = None if self.penalty is None else self.penalty * scale.length**2 / scale.tension
         adhesion = self.adhesion / scale.tension
-        return Contact(scale.local_solid(self.solid), eps, self.depth, adhesion)
+        solid = scale.local_solid(self.solid)
+        return Contact(solid, eps, self.depth, adhesion, self.point_supports)

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..splines import Table
+from ..splines.table import shared
 from .term import BodyDensity
 
 CACHED = 16_000
@@ -136,7 +137,8 @@ def hessian(
     if kernels is not None:
         # one memory layout, so that one compiled version serves
         arrays = map(np.ascontiguousarray, (
-            table.values, table.d1, table.d2, table.weights, at.a1, at.a2, at.c, at.area,
+            shared(table.values), shared(table.d1), shared(table.d2), table.weights,
+            at.a1, at.a2, at.c, at.area,
             flux(body, at.x), flux_gradient(body, at.x), np.array(body.gradient), directions,
         ))  # fmt: skip
         return np.asarray(kernels.hessian(*arrays, float(tension)))

@@ -64,6 +64,18 @@ def test_droplet_on_asperities():
     assert found["penetration"] < 1e-3
 
 
+def test_lotus_leaf():
+    found = load("lotus_leaf").main(spacings=(0.1, 0.05))
+    coarse, fine = found[0.1], found[0.05]
+    assert fine["asperities"] > 3.0 * coarse["asperities"]
+    for row in found.values():
+        assert row["carried"] == pytest.approx(1.0, abs=1e-4)
+        assert row["smallest_force"] > 0
+        assert 0.55 < row["lower_by"] / row["sag"] < 0.75
+    # the wetted part of the foot falls with the asperities' radius
+    assert fine["wet_fraction"] == pytest.approx(0.5 * coarse["wet_fraction"], rel=0.15)
+
+
 def test_contact_angles_on_asperities():
     found = load("contact_angles_on_asperities").main(
         angles=(180.0, 150.0), radius=0.1, elements=60

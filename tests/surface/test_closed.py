@@ -6,6 +6,7 @@ from helpers import slopes
 from scipy.integrate import solve_ivp
 
 from iga_membrane.scenes.asperities import whole_skin
+from iga_membrane.scenes.pattern import Pattern
 from iga_membrane.splines import pillow_space
 from iga_membrane.surface.closed import (
     QUARTER,
@@ -72,7 +73,7 @@ def test_sectors_integrate_the_whole(degree, elements):
 
 
 def test_control_points_and_directions_have_the_mirror_planes():
-    skin = whole_skin(1.0, 4 * np.pi / 3, 0.2, 2, 12)
+    skin = whole_skin(1.0, 4 * np.pi / 3, Pattern(0.2), 2, 12)
     for field in (skin.points, skin.directions):
         net = field[skin.space.shared].reshape(*skin.space.net_shape, 3)
         assert net[::-1] == pytest.approx(net * [1, -1, 1], abs=1e-12)
@@ -81,7 +82,7 @@ def test_control_points_and_directions_have_the_mirror_planes():
 
 
 def test_the_droplet_starts_with_its_volume_and_an_even_foot():
-    skin = whole_skin(1.0, 4 * np.pi / 3, 0.1, 2, 0)
+    skin = whole_skin(1.0, 4 * np.pi / 3, Pattern(0.1), 2, 0)
     assert integrals(skin.space, skin.points)[1] == pytest.approx(4 * np.pi / 3, rel=1e-2)
     table = skin.space.table(1)
     at = vary.element_points(table, skin.points)

@@ -1,0 +1,128 @@
+"""Patterns of asperities under a droplet: how deep it sags between them, how fine a mesh they need.
+
+Meshes are those of :class:`~iga_membrane.surface.closed.Stretch`: even elements under the foot,
+longer and longer ones beside it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..solids import Solid, SphereLattice, Spheres
+from ..splines.point_load import ROBIN
+
+FINE = 0.75
+"""Part of the elements from the middle of the square to a side that lies under the foot, at
+least."""
+MANY = 100
+"""Asperities under the foot from which they are many: the start is then the drop on their tops,
+pressed on them, and contact is a hard penalty at all quadrature points."""
+PER_SPOT = 2.2, 1.25
+"""Elements along the radius of the smallest of many asperities, and along that of its wet spot, by
+default."""
+LEAST = 36
+"""Elements from the middle to a side at least, for a droplet on point supports."""
+PER_SPACING = 3.0, 4.0
+"""Elements from one point support to the next: at least, and as many as keep spots narrow."""
+NARROW, WIDER = 0.25, 1.5
+"""Radius of a spot over the element's size that the mesh of point supports is made for, and how
+much wider spots on the coarsest such mesh may be."""
+SUNK = 3e-4
+"""Depth over radius to which that penalty lets the membrane sink."""
+GROWTH = 0.15
+"""Largest growth from one element to the next beside the evenly meshed foot of many asperities."""
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """What carries a droplet (dimensionless).
+
+    Attributes
+    ----------
+    length : over which the contact changes: radius of the smallest asperity.
+    cell : area of the substrate per asperity; infinite without asperities.
+    lies : whether the membrane lies on the asperities; where it passes through them, below 180
+        degrees, more of them are wet.
+    repels : whether the contact angle is 180 degrees.
+    stiffness : traction over depth of a penalty that was asked for, else 0: the mesh is then as
+        fine as the depth asks for.
+    """
+
+    length: float
+    cell: float = np.inf
+    lies: bool = True
+    repels: bool = True
+    stiffness: float = 0.0
+
+    def many(self, foot: float) -> bool:
+        """Whether many asperities lie under a foot of a radius."""
+        return bool(np.pi * foot**2 > MANY * self.cell)
+
+    @property
+    def spacing(self) -> float:
+        """Of a square lattice with as many asperities."""
+        return float(np.sqrt(self.cell))
+
+    def spot(self, pressure: float) -> float:
+        """Radius a of the wet spots under a membrane of tension 1: they carry
+        ``2 pi a^2 / length = pressure cell``."""
+        return float(np.sqrt(pressure * self.cell * self.length / (2.0 * np.pi)))
+
+    def sag(self, pressure: float) -> float:
+        """Mean depth of such a membrane under the tops: the potential of a wide square lattice of
+        point forces ``pressure cell``, cut off at the spots."""
+        log = np.log(self.spacing / self.spot(pressure)) - ROBIN
+        return float(pressure * self.cell * (2.0 * log + 1.0) / (4.0 * np.pi))
+
+    def penalty(self, pressure: float) -> float:
+        """Traction over depth with which the smallest asperity lets the membrane sink by
+        ``SUNK``."""
+        return (pressure + 2.0 / self.length) / (SUNK * self.length)
+
+
+def element_size(pattern: Pattern, pressure: float, largest: float) -> float:
+    """Under many asperities: so coarse that each is a point support, or, where wet spots are too
+    wide for that, so fine that they are resolved; ``largest`` : for the droplet itself."""
+    spot, spacing = pattern.spot(pressure), pattern.spacing
+    coarsest, finest = (spacing / count for count in PER_SPACING)
+    coarsest = min(coarsest, largest)
+    if spot <= WIDER * NARROW * coarsest:
+        return float(np.clip(spot / NARROW, min(finest, coarsest), coarsest))
+    return min(pattern.length / PER_SPOT[0], spot / PER_SPOT[1])
+
+
+PARTS = np.linspace(FINE, 0.97, 221)
+"""Parts of the elements under the foot to choose from."""
+
+
+def _growth(reach: float, elements: Array | float) -> Array:
+    """(parts,) largest growth from element to element beside a foot that takes each of the parts:
+    of the slope ``s + A (1 - cos(pi t))`` of :class:`~iga_membrane.surface.closed.Stretch`."""
+    s = np.minimum(reach / PARTS, 1.0)
+    a = (1.0 - s) / (1.0 - PARTS)
+    return np.asarray(np.pi * a / np.sqrt(s * s + 2.0 * s * a) / ((1.0 - PARTS) * elements))
+
+
+def fine_part(reach: float, elements: int) -> float:
+    """Largest part of the elements under the foot that the others can follow."""
+    gentle = np.flatnonzero(_growth(reach, elements) <= GROWTH)
+    return float(PARTS[gentle[-1] if len(gentle) else 0])
+
+
+def graded(reach: float, under: float) -> float:
+    """Elements from the middle to a side with as many under the foot, the others growing."""
+    gentle = np.flatnonzero(_growth(reach, under / PARTS) <= GROWTH)
+    return float(under / PARTS[gentle[-1] if len(gentle) else 0])
+
+
+def cell_of(solid: Solid) -> float:
+    """Area of the substrate per asperity; infinite without asperities."""
+    if isinstance(solid, SphereLattice):
+        return solid.area_per_sphere
+    if isinstance(solid, Spheres):
+        place = np.asarray(solid.centers)[:, :2]
+        return float(np.prod(np.ptp(place, axis=0)) / len(place)) or np.inf
+    return float(np.inf)

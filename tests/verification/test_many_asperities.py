@@ -1,0 +1,116 @@
+"""Droplets on hundreds and thousands of asperities at 180 degrees: R = 1, Bo = 1, spacing 4 r_s."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from helpers import UNIT_VOLUME
+
+import iga_membrane as iga
+from iga_membrane.reference import drop_on_plane
+from iga_membrane.terms import Contact
+
+FLAT = drop_on_plane(1.0, 180.0)
+
+
+def scene_of(spacing, elements=None, share=0.25, **lattice):
+    return iga.sessile_droplet(
+        iga.SphereLattice(180.0, share * spacing, spacing, **lattice),
+        volume=UNIT_VOLUME,
+        gravity=1.0,
+        discretization=iga.Discretization(elements=elements),
+    )
+
+
+@cache
+def solved(spacing, elements=None, share=0.25):
+    return iga.solve(scene_of(spacing, elements, share))
+
+
+def lowered(solution):
+    """How much lower than on a plane the droplet stands."""
+    return FLAT["height"] - solution.measures["height"]
+
+
+@pytest.mark.parametrize("spacing", [0.11, 0.06, 0.04, pytest.param(0.02, marks=pytest.mark.slow)])
+def test_forces_on_every_asperity_balance_the_weight(spacing):
+    solution = solved(spacing)
+    assert len(solution.iterations) <= 15
+    asperities = solution.contact["asperities"]
+    expected = np.pi * FLAT["contact_radius"] ** 2 / spacing**2
+    assert expected < len(asperities) < 1.4 * expected
+    vectors = np.array([a["force_vector"] for a in asperities])
+    assert (vectors[:, 2] < 0).all()
+    assert vectors.sum(axis=0) == pytest.approx([0, 0, -UNIT_VOLUME], abs=1e-4 * UNIT_VOLUME)
+    # far from the rim each carries the pressure on its cell
+    middle = min(asperities, key=lambda a: np.hypot(*a["center"][:2]))
+    assert middle["force"] == pytest.approx(solution.measures["p_base"] * spacing**2, rel=3e-2)
+
+
+def test_each_law_says_its_name():
+    assert solved(0.11).contact["law"] == "penalty"
+    assert solved(0.06).contact["law"] == "point supports"
+
+
+def test_point_supports_lower_the_droplet_as_resolved_spots_do():
+    coarse = solved(0.06)
+    fine = iga.solve(scene_of(0.06, elements=230))
+    assert coarse.contact["law"] != fine.contact["law"]
+    assert coarse.unknowns < 0.1 * fine.unknowns
+    assert lowered(coarse) == pytest.approx(lowered(fine), rel=4e-2)
+    assert coarse.contact["wet_solids"] == pytest.approx(fine.contact["wet_solids"], abs=8)
+
+
+def test_point_supports_do_not_hang_on_the_mesh():
+    heights = [lowered(solved(0.03, elements)) for elements in (110, 140, 170)]
+    assert np.ptp(heights) < 4e-2 * heights[-1]
+
+
+@pytest.mark.parametrize(("spacing", "share"), [(0.09, 0.25), (0.05, 0.15), (0.04, 0.35)])
+def test_a_droplet_stands_lower_by_the_sag_between_its_asperities(spacing, share):
+    """Its volume fills what sags: the mean sag of the membrane over the foot, less what the droplet
+    gains elsewhere, is between a third and all of the formula's value at the foot's pressure."""
+    solution = solved(spacing, None, share)
+    p = solution.measures["p_base"]
+    a = np.sqrt(p * spacing**2 * share * spacing / (2.0 * np.pi))
+    sag = p * spacing**2 * ((np.log(spacing / a) - 1.3105) / (2.0 * np.pi) + 1.0 / (4.0 * np.pi))
+    assert 0.3 * sag < lowered(solution) < sag
+
+
+def test_the_flat_droplet_on_the_same_mesh():
+    scene = scene_of(0.05)
+    plane = iga.Plane(180.0)
+    terms = [
+        replace(t, solid=plane, point_supports=False) if isinstance(t, Contact) else t
+        for t in scene.terms
+    ]
+    flat = iga.solve(replace(scene, terms=terms, substrate=plane))
+    assert flat.measures["height"] == pytest.approx(FLAT["height"], abs=3e-5)
+
+
+def scattered(spacing, seed, reach=1.1):
+    """Spheres at random, at least four fifths of a spacing apart, radii scattered by 10 %."""
+    rng, cells, places = np.random.default_rng(seed), {}, []
+    apart = 0.8 * spacing
+    for place in rng.uniform(-reach, reach, (int(30 * reach**2 / spacing**2), 2)):
+        i, j = (place // apart).astype(int)
+        near = [q for k in (-1, 0, 1) for m in (-1, 0, 1) for q in cells.get((i + k, j + m), ())]
+        if all(np.hypot(*(place - other)) >= apart for other in near):
+            cells.setdefault((i, j), []).append(place)
+            places.append(place)
+    radii = 0.25 * spacing * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, len(places)))
+    return iga.Spheres(180.0, np.column_stack([places, -radii]), radii)
+
+
+@pytest.mark.parametrize("spacing", [0.09, pytest.param(0.053, marks=pytest.mark.slow)])
+def test_irregular_asperities(spacing):
+    scene = iga.sessile_droplet(scattered(spacing, seed=3), volume=UNIT_VOLUME, gravity=1.0)
+    assert scene.sector.model == "full"
+    solution = iga.solve(scene)
+    asperities = solution.contact["asperities"]
+    assert len(asperities) > 1.2 / spacing**2
+    vectors = np.array([a["force_vector"] for a in asperities])
+    assert (vectors[:, 2] < 0).all()
+    assert vectors.sum(axis=0) == pytest.approx([0, 0, -UNIT_VOLUME], abs=1e-3 * UNIT_VOLUME)
+    assert 0.0 < lowered(solution) < 0.1 * spacing
