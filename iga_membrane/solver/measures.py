@@ -177,13 +177,16 @@ def _cell(
     scale, solid = scene.units, scene.units.local_sphere(scene.substrate)
     found = footing(scene, assembly, surface, body)
     force = -float(found.total[2])
+    edge, corner = _edge_heights(surface)
+    heights = {"z_edge": edge * scale.length, "z_corner": corner * scale.length}
+    if not len(found.which):
+        return heights | {"A_wet": 0.0, "F_sphere": 0.0}  # a failed state off its sphere
     polar, contact = float(found.polar[0]), float(found.heights[0])
     radius = solid.radius * np.sin(polar)
     lying = 0.0 if assembly.contact is None else float(found.areas.sum())
     wet = float(found.areas.sum())
-    edge, corner = _edge_heights(surface)
     press = -body.constant * float(found.projected.sum())
-    return {
+    return heights | {
         "A_LG": values["A_LG"] - lying * scale.length**2,
         "A_wet": wet * scale.length**2,
         "phi_deg": float(np.degrees(polar)),
@@ -191,8 +194,6 @@ def _cell(
         "cap_height": solid.radius * (1.0 - np.cos(polar)) * scale.length,
         "contact_angle_measured": float(found.angles[0]),
         "sag": (contact - edge) * scale.length,
-        "z_edge": edge * scale.length,
-        "z_corner": corner * scale.length,
         "F_sphere": force * scale.force,
         "F_press": press * scale.force,
         "F_line": (force - press) * scale.force,

@@ -101,7 +101,7 @@ class Space:
         rows: Rows = {}
         for i, j in _ORDERS[: 6 if second else 3]:
             product = one[i][:, :, None, :, None] * two[j][:, None, :, None, :]
-            rows[i, j] = product.reshape(len(product), len(local), -1)
+            rows[i, j] = product.reshape(len(product), len(local), self.functions.shape[1])
         rows = {
             key: np.broadcast_to(row, (len(chosen), *row.shape[1:]))
             for key, row in self.finished(rows, chosen[own]).items()

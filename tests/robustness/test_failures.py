@@ -280,3 +280,16 @@ def test_one_interrupt_is_enough_and_leaves_valid_files(tmp_path, delay):
     assert "interrupted" in said.decode()
     with pytest.raises(iga.StateError, match="no solution yet"):
         iga.load(out / "state.npz")
+
+
+def test_a_cell_that_has_left_its_sphere_ends_with_a_status():
+    """Just above the largest pressure an iterate may touch nothing at all."""
+    scene = iga.asperity_cell(
+        iga.Sphere(180.0, 1.0, (0.0, 0.0, -1.0)),
+        size=4.0,
+        pressure=0.5,
+        discretization=iga.Discretization(elements=10, model="quarter"),
+    )
+    lost = iga.solve(scene, on_fail="return")
+    assert not lost.success
+    assert lost.message

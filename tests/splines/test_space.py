@@ -85,3 +85,9 @@ def test_edge_functions_are_those_of_the_boundary_row():
     n = line.count
     assert list(space.edge_functions("xi2=0")) == list(range(0, n * n, n))
     assert list(space.edge_functions("xi1=1")) == list(range(n * (n - 1), n * n))
+
+
+def test_no_elements_have_an_empty_table():
+    space = tensor_space(line_basis("bspline", 3, 2), line_basis("bspline", 4, 2))
+    table = space.table(3, np.zeros(0, int))
+    assert table.values.shape == (0, 9, space.functions.shape[1])
