@@ -15,11 +15,15 @@ from .assembly import Assembly
 from .meeting import law_of, line_of
 from .newton import NEAR, NewtonOptions, NewtonResult, newton
 from .options import SolverOptions
+from .status import Status
 
 SHALLOW = 0.6
 """Part of its depth under a flat membrane below which a spot is pressed to that depth."""
 WIDE = 1.5
 """Reach of that press over the sphere's radius."""
+FIRM = 5.0
+"""Firmness of ties with which a failed solve begins anew: steadier, but the angle is less exact."""
+FAILED = Status.STALLED, Status.MAX_ITER
 NEARBY = 1.0
 """Distance from a particle's centre along its axis, over the droplet's length, within which the
 membrane is its own."""
@@ -58,10 +62,33 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
         if len(before.multipliers) == assembly.multipliers:
             multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)
+    if result.status in FAILED and assembly.trim is not None:
+        result = _firmly(scene, assembly, start, multipliers, options) or result
     if before is not None:
         result.iterations = before.iterations + result.iterations
         result.linear_seconds += before.linear_seconds
     return result
+
+
+def _firmly(
+    scene: Scene,
+    assembly: Assembly,
+    start: Surface,
+    multipliers: Array | None,
+    options: NewtonOptions,
+) -> NewtonResult | None:
+    """Newton with firmer ties first, then from there with the usual ones; None if either fails."""
+    assert assembly.trim is not None
+    ties, grading = assembly.trim.ties, scene.meridian_grading
+    ties.firmness = FIRM
+    firm = newton(assembly, start, multipliers, grading, options)
+    ties.firmness = 1.0
+    if firm.status is not None:
+        return None
+    result = newton(assembly, firm.surface, firm.multipliers, grading, options)
+    result.iterations = firm.iterations + result.iterations
+    result.linear_seconds += firm.linear_seconds
+    return result if result.status is None else None
 
 
 def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:

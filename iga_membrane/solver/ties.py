@@ -42,9 +42,11 @@ class Ties:
     Attributes
     ----------
     strength : factor of the jumps' energy over the tension.
+    firmness : by which it is larger than usual, on asperities.
     """
 
     strength: float = STRENGTH[0]
+    firmness: float = 1.0
 
     def __init__(
         self,
@@ -65,7 +67,7 @@ class Ties:
         elements of a size over the contact length; ``loose`` if there are particles."""
         steep = min(steepness / (0.25 * np.pi), 1.0)
         wanted = STRENGTH[1] * steep**4 * (element / COARSE) ** 2
-        self.strength = LOOSE if loose else float(np.clip(wanted, *STRENGTH))
+        self.strength = LOOSE if loose else self.firmness * float(np.clip(wanted, *STRENGTH))
         none = np.zeros(len(self._elements), bool)
         self._held, self._touched, self._last = none, none, (none, none)
         self._calls = 0
