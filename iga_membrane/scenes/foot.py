@@ -151,8 +151,8 @@ def _with_particles(parts: Question) -> Foot:
     model = mirrored_model(local, _sector(mesh, parts.bond).model)
     if mesh.model is not None and MODELS.index(mesh.model) > MODELS.index(model):
         raise SceneError(
-            f'discretization.model = "{mesh.model}": the particles have no such mirror planes; '
-            f'"{model}" is the smallest model here'
+            f'discretization.model = "{mesh.model}": the particles do not lie in its mirror '
+            f'planes; "{model}" is the smallest model here'
         )
     sector = Sector(mesh.model or model)
     rest = _foot(parts.substrate, parts.liquid, scale.length, parts.down)
