@@ -97,19 +97,18 @@ def towards_liquid(start: Surface, particles: Sequence[Sphere], length: float) -
 
 
 def mirrored_model(particles: Sequence[Sphere], smallest: Model) -> Model:
-    """The smallest model whose mirror planes the particles have too, none smaller than another's.
+    """The smallest model in whose mirror planes all particles lie, none smaller than another's.
 
+    The patch has its pole in one of them, so that a pair of mirror images has no symmetric patch.
     Mirror planes of the models: y = 0, then x = 0, then x = y.
+
+    Parameters
+    ----------
+    particles : in the droplet's scale.
     """
-    rows = np.array([[*p.center, p.radius, p.contact_angle, p.density] for p in particles])
-    scale = np.abs(rows).max(axis=0) + 1e-300
-
-    def same(image: Array) -> bool:
-        off = np.abs(rows[:, None] - image[None]) / scale
-        return bool((off.max(axis=2).min(axis=1) <= 1e-9).all())
-
-    images = (rows * [1, -1, 1, 1, 1, 1], rows * [-1, 1, 1, 1, 1, 1], rows[:, [1, 0, 2, 3, 4, 5]])
+    centers = np.array([each.center for each in particles])
+    images = (centers * [1, -1, 1], centers * [-1, 1, 1], centers[:, [1, 0, 2]])
     kept = 0
-    while kept < 3 and same(images[kept]):
+    while kept < 3 and float(np.abs(images[kept] - centers).max()) <= 1e-9:
         kept += 1
     return MODELS[min(kept, MODELS.index(smallest))]

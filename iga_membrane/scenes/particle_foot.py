@@ -43,8 +43,8 @@ def with_particles(parts: Question) -> Foot:
     model = mirrored_model(local, sector_of(mesh, parts.bond).model)
     if mesh.model is not None and MODELS.index(mesh.model) > MODELS.index(model):
         raise SceneError(
-            f'discretization.model = "{mesh.model}": the particles have no such mirror planes; '
-            f'"{model}" is the smallest model here'
+            f'discretization.model = "{mesh.model}": the particles do not lie in its mirror '
+            f'planes; "{model}" is the smallest model here'
         )
     sector = Sector(mesh.model or model)
     rest = rest_of(parts.substrate, parts.liquid, scale.length, parts.down)

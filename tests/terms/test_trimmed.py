@@ -23,14 +23,25 @@ def droplet(angle=140.0, offset=(0.03, 0.0)):
     )
 
 
+def particle_on_droplet():
+    particle = iga.Sphere(80.0, 0.3, (1.0, 0.1, 0.7))
+    mesh = iga.Discretization(elements=12)
+    return iga.sessile_droplet(
+        iga.Plane(150.0),
+        volume=4.0 * np.pi / 3.0,
+        gravity=0.5,
+        hold="xy",
+        particles=[particle],
+        discretization=mesh,
+    )
+
+
 def state(scene, seed, sunk):
     """An assembly and a disturbed state whose membrane passes through solids."""
     assembly, surface = Assembly(scene), scene.local_surface()
     motion = assembly.spines.on(surface)
     random = np.random.default_rng(seed)
-    step = (
-        0.02 * scene.substrate.radius / scene.units.length * random.standard_normal(assembly.size)
-    )
+    step = 0.02 * assembly.trim.term.solid.scale * random.standard_normal(assembly.size)
     surface = surface.moved(surface.points + motion.displacement(step) - [0.0, 0.0, sunk])
     surface = assembly.relaxed(surface, assembly.spines.on(surface))
     return assembly, surface, motion, random
@@ -43,6 +54,7 @@ SCENES = {
     "round cell": lambda: (cell("circle", elements=8, place=(0.0, 0.0)), 0.0),
     "round cell off centre": lambda: (cell("circle", degree=3, elements=8), 0.0),
     "droplet on tilted asperities": lambda: (droplet(), 0.03),
+    "particle on a droplet": lambda: (particle_on_droplet(), 0.0),
 }
 
 
@@ -53,9 +65,7 @@ def test_energy_and_volume_have_exact_derivatives(name, monkeypatch):
     assembly, surface, motion, random = state(scene, 1, sunk)
     multipliers = np.zeros(assembly.multipliers)  # the last holds a shift's gauge, not an energy
     multipliers[: len(assembly.constraints)] = 2.0
-    along = (
-        random.standard_normal(assembly.size) * 0.3 * scene.substrate.radius / scene.units.length
-    )
+    along = 0.3 * assembly.trim.term.solid.scale * random.standard_normal(assembly.size)
     along[assembly.trim.ties.idle] = 0.0
     first, second = lagrangian_slopes(assembly, surface, multipliers, motion, along)
     assert first > 1.8

@@ -1,0 +1,173 @@
+"""Particles on a droplet on a plane: forces, symmetries, the slope of the energy."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from helpers import UNIT_VOLUME, droplet_file
+
+import iga_membrane as iga
+
+BOND = 0.5
+PLANE = iga.Plane(150.0)
+
+
+@cache
+def place(polar):
+    """Point and normal of the droplet without particles at an angle from its top, seen from its
+    half height, in the plane y = 0."""
+    alone = iga.solve(iga.sessile_droplet(PLANE, volume=UNIT_VOLUME, gravity=BOND))
+    k = alone.surface.grid(3, 2001, 1)
+    x, normal = k.position[0], k.normal[0]
+    r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
+    nearest = np.abs(np.degrees(np.arctan2(r, z - 0.5 * alone.measures["height"])) - polar).argmin()
+    sideways = np.hypot(*normal[nearest, :2])
+    return np.array([r[nearest], 0.0, z[nearest]]), np.array([sideways, 0.0, normal[nearest, 2]])
+
+
+def scene(*particles, hold="x", **mesh):
+    return iga.sessile_droplet(
+        PLANE,
+        volume=UNIT_VOLUME,
+        gravity=BOND,
+        hold=hold,
+        particles=particles,
+        discretization=iga.Discretization(**mesh),
+    )
+
+
+def particle(polar=95.0, angle=90.0, radius=0.2, *, shift=(0.0, 0.0, 0.0)):
+    return iga.Sphere(angle, radius, tuple((place(polar)[0] + shift).tolist()), 1.0)
+
+
+@cache
+def solved(polar=95.0, angle=90.0, radius=0.2, **mesh):
+    solution = iga.solve(scene(particle(polar, angle, radius), **mesh))
+    assert solution.success, solution.message
+    return solution
+
+
+def pull(solution, which=0):
+    """Force of liquid and membrane on a particle, without its weight."""
+    forces = solution.forces[which]
+    return forces.effective - forces.weight
+
+
+def size(force):
+    return np.linalg.norm(force)
+
+
+@pytest.mark.parametrize("case", [(95.0, 90.0, 0.2), (65.0, 110.0, 0.3), (65.0, 75.0, 0.05)])
+def test_forces_converge_and_balance(case):
+    """By 1 part in 10,000, at fifth order; both forces on the droplet balance, faster still."""
+    meshes = [solved(*case, elements=n) for n in (16, 24, 36)]
+    coarse, middle, fine = (pull(s)[[0, 2]] for s in meshes)
+    first, last = np.abs(middle - coarse), np.abs(fine - middle)
+    assert last.max() < 1e-4 * size(fine)
+    assert size(last) < size(first) / 1.5**4
+    # what holds the liquid is what the liquid does to the particle; the plane carries the rest
+    sideways = [abs(s.hold_force[0] - pull(s)[0]) / size(pull(s)) for s in meshes]
+    weight = BOND * UNIT_VOLUME
+    upwards = [abs(s.contact["support_force"] - pull(s)[2] - weight) / weight for s in meshes]
+    assert sideways[2] < 2e-4
+    assert upwards[2] < 1e-5
+    assert sideways[2] < sideways[0] / 2.25**4
+    assert upwards[2] < upwards[0] / 2.25**4
+
+
+def test_half_model_agrees_with_full():
+    half, full = solved(), iga.solve(scene(particle(), hold="xy", model="full"))
+    assert (half.scene.sector.model, full.scene.sector.model) == ("half", "full")
+    assert full.success, full.message
+    assert size(pull(full) - pull(half)) < 1e-6 * size(pull(half))
+    assert full.measures["energy"] == pytest.approx(half.measures["energy"], rel=1e-8)
+
+
+def test_turned_particle_turns_force():
+    beside = particle()
+    x, _, z = beside.center
+    turned = iga.solve(scene(replace(beside, center=(0.0, x, z)), hold="xy"))
+    assert turned.success, turned.message
+    fx, fy, fz = pull(solved())
+    assert size(pull(turned) - [-fy, fx, fz]) < 1e-6 * size(pull(turned))
+
+
+def test_force_is_slope_of_energy():
+    _, normal = place(95.0)
+    step, force = 2e-3, pull(solved(elements=24))
+    for way in (normal, np.array([-normal[2], 0.0, normal[0]])):
+        energies = []
+        for sign in (1.0, -1.0):
+            moved = iga.solve(scene(particle(shift=sign * step * way), elements=24))
+            assert moved.success, moved.message
+            energies.append(moved.measures["energy"])
+        slope = (energies[0] - energies[1]) / (2.0 * step)
+        assert abs(force @ way) > 0.05 * size(force)
+        assert force @ way == pytest.approx(-slope, abs=3e-4 * size(force))
+
+
+@pytest.mark.parametrize(
+    "polar", [35.0, pytest.param(95.0, marks=pytest.mark.slow)], ids=["near", "opposite"]
+)
+def test_mirror_images_have_mirrored_forces(polar):
+    """No mirror plane between them is used: the patch has its pole in one."""
+    one = particle(polar, radius=0.3)
+    x, _, z = one.center
+    pair = iga.solve(scene(one, replace(one, center=(-x, 0.0, z))))
+    assert pair.success, pair.message
+    assert pair.scene.sector.model == "half"
+    fx, fy, fz = pull(pair, 0)
+    assert size(pull(pair, 1) - [-fx, fy, fz]) < 1e-4 * size(pull(pair))
+    assert abs(pair.hold_force[0]) < 1e-4 * size(pull(pair))
+
+
+def test_model_with_particle_beside_its_mirror_plane_is_refused():
+    one = particle()
+    x, _, z = one.center
+    pair = [replace(one, center=(y * 0.6, y, z)) for y in (-0.8 * x, 0.8 * x)]
+    assert scene(*pair, hold="xy").sector.model == "full"
+    with pytest.raises(iga.SceneError, match=r'model = "half".*do not lie in its mirror planes'):
+        scene(*pair, hold="xy", model="half")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            [(1.0, 0.0, 0.7), (1.1, 0.2, 0.7)],
+            r"less than the sum of their radii 0\.4: they overlap",
+        ),
+        ([(0.9, 0.0, 0.15)], r"0\.15 above the plane.*reaches into the substrate"),
+        ([(2.0, 0.0, 0.7)], r"particle\[0\]\.center.*farther than a meniscus reaches"),
+    ],
+)
+def test_particles_in_wrong_places_are_refused(given, said):
+    with pytest.raises(iga.SceneError, match=said):
+        scene(*(iga.Sphere(90.0, 0.2, center) for center in given))
+
+
+def test_particle_that_nothing_holds_is_refused():
+    with pytest.raises(iga.SceneError, match=r"particle\[0\]\.contact_angle = 180"):
+        scene(iga.Sphere(180.0, 0.2, (1.0, 0.0, 0.7)))
+
+
+def test_scene_file_gives_the_same_numbers(tmp_path):
+    given = particle()
+    more = f"""
+[droplet]
+hold = "x"
+[[particle]]
+contact_angle = 90.0
+radius = 0.2
+density = 1.0
+center = {list(given.center)}
+"""
+    path = tmp_path / "particle.toml"
+    path.write_text(droplet_file(PLANE.contact_angle, BOND, more, elements=24))
+    loaded = iga.load_scene(path).scene
+    assert loaded.description == scene(given, elements=24).description
+    read, asked = iga.solve(loaded), solved(elements=24)
+    np.testing.assert_array_equal(read.forces[0].effective, asked.forces[0].effective)
+    assert read.hold_force == asked.hold_force
+    assert dict(read.measures) == dict(asked.measures)
