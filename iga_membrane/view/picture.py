@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..errors import OutputError
-from ..solids import Sphere, SphereLattice, Spheres
+from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..solver.contact_line import contact_line
 from ..terms import Contact, TrimmedContactLine
 
@@ -70,9 +70,9 @@ def plot(
     plotter.set_background("white")
     length = solution.scene.units.length
     mesh, name = _membrane(solution, color, resolution)
-    through = _passes_through(solution)
-    if through:
-        mesh, lines = _outside(solution, mesh)
+    through = _trimming_solid(solution)
+    if through is not None:
+        mesh, lines = _outside(through, mesh)
         plotter.add_mesh(lines, color="#3d0c02")
     options: dict[str, Any] = {"color": "#6fa8dc"}
     if name:
@@ -84,9 +84,10 @@ def plot(
     # arrows tangent to the membrane show through it
     opacity = 0.7 if traction else 1.0
     plotter.add_mesh(mesh, smooth_shading=True, specular=0.3, opacity=opacity, **options)
-    _substrate(plotter, pv, solution)
+    _solids(plotter, pv, solution)
     inside = solution.scene.line_inside
-    on_edge = not through and not _on_an_area(solution)
+    flat = isinstance(solution.scene.substrate, Plane)
+    on_edge = (flat or through is None) and not _on_an_area(solution)
     if solution.scene.substrate is not None and (inside or on_edge):
         line = contact_line(solution.surface.moved(_local(solution)), inside or "xi2=0")
         world = solution.scene.units.to_world(line.position)
@@ -200,19 +201,18 @@ def _on_an_area(solution: Solution) -> bool:
     return any(isinstance(term, Contact) for term in solution.scene.terms)
 
 
-def _passes_through(solution: Solution) -> bool:
-    """Whether the membrane passes through its solids."""
-    return any(isinstance(term, TrimmedContactLine) for term in solution.scene.terms)
+def _trimming_solid(solution: Solution) -> Plane | Sphere | SphereLattice | Spheres | None:
+    """The solid that the membrane passes through, in world coordinates."""
+    terms = (term for term in solution.scene.terms if isinstance(term, TrimmedContactLine))
+    return next((term.solid for term in terms), None)
 
 
 LINE = 0.02
 """Thickness of contact lines on spheres over their radius."""
 
 
-def _outside(solution: Solution, mesh: Any) -> tuple[Any, Any]:
+def _outside(solid: Plane | Sphere | SphereLattice | Spheres, mesh: Any) -> tuple[Any, Any]:
     """The part of the membrane's mesh that bounds the liquid, and its contact lines."""
-    solid = solution.scene.substrate
-    assert solid is not None
     mesh["gap"] = solid.nearest(np.asarray(mesh.points, float)).gap
     # inside its solid the membrane may rise above it: such parts hang on nothing
     outer = mesh.clip_scalar(scalars="gap", value=0.0, invert=False).connectivity("largest")
@@ -243,8 +243,15 @@ def _asperities(plotter: Any, pv: Any, solution: Solution) -> None:
         plotter.add_mesh(base, color="#d9d2c5", ambient=0.3)
 
 
-def _substrate(plotter: Any, pv: Any, solution: Solution) -> None:
+def _solids(plotter: Any, pv: Any, solution: Solution) -> None:
+    """Substrate and particles."""
     substrate, scale = solution.scene.substrate, solution.scene.units
+    for each in solution.scene.particles:
+        if each != substrate:
+            ball = pv.Sphere(
+                radius=each.radius, center=each.center, theta_resolution=80, phi_resolution=80
+            )
+            plotter.add_mesh(ball, color="#d9d2c5", ambient=0.3, smooth_shading=True)
     if isinstance(substrate, (SphereLattice, Spheres)):
         _asperities(plotter, pv, solution)
         return

@@ -97,3 +97,15 @@ def test_cassie_limit():
     assert row["low"] == pytest.approx(row["level_line"], rel=1e-3)
     assert row["polar"] > 90.0
     assert example.level_line(180.0, 0.04) == pytest.approx(0.1 * np.pi / (0.04 - np.pi * 0.05**2))
+
+
+def test_particle_on_droplet():
+    rows = load("particle_on_droplet").main(polar=(60.0, 90.0), elements=16)
+    for row in rows:
+        assert np.hypot(row["normal"], row["tangential"]) == pytest.approx(
+            np.hypot(row["F_x"], row["F_z"])
+        )
+        assert row["hold"] == pytest.approx(row["F_x"], rel=5e-3)
+        assert row["tangential"] < 0 < row["normal"]
+    assert rows[0]["F_z"] > rows[1]["F_z"]
+    assert rows[0]["F_x"] < rows[1]["F_x"]

@@ -92,7 +92,7 @@ def test_picture_leaves_out_the_membrane_inside_its_sphere():
     found = iga.solve(scene)
     mesh, _ = picture._membrane(found, "none", 129)
     whole = mesh.area
-    outer, lines = picture._outside(found, mesh)
+    outer, lines = picture._outside(found.scene.substrate, mesh)
     assert outer.area == pytest.approx(found.measures["A_LG"], rel=1e-3)
     assert whole > 1.1 * outer.area
     away = np.linalg.norm(lines.points - center, axis=1) / radius
