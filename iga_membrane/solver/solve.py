@@ -121,6 +121,10 @@ def _delivered(solution: Solution, on_fail: str) -> Solution:
     return solution
 
 
+WORTH_SAYING = 1e8
+"""Bytes of memory from which a solve says what it needs."""
+
+
 def _check_memory(scene: Scene, options: SolverOptions) -> None:
     """Tables, blocks and factors, from counts; refuse before allocating any."""
     space = scene.surface.space
@@ -129,7 +133,8 @@ def _check_memory(scene: Scene, options: SolverOptions) -> None:
     points = options.quadrature**2 if options.quadrature else local
     need = 8.0 * elements * (14.0 * points * local + 6.0 * local**2)
     need += 4e3 * space.count / scene.sector.copies
-    log.info("%d elements need about %.2g GB of memory", elements, need / 1e9)
+    level = logging.INFO if need > WORTH_SAYING else logging.DEBUG
+    log.log(level, "%d elements need about %.2g GB of memory", elements, need / 1e9)
     if need > options.max_memory_gb * 1e9:
         raise SceneError(
             f"solver.max_memory_gb = {options.max_memory_gb:g}: this mesh needs about "
