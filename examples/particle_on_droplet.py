@@ -2,8 +2,8 @@
 
 The droplet of Bond number 0.5 rests on a plane that it wets at 150 degrees. A fixed sphere of
 radius R / 5 and 90 degrees has its centre on the surface of the undisturbed droplet, at polar
-angles from the top downwards, seen from half the droplet's height. A neutral body force holds the
-droplet sideways: it is what rolls the droplet, or drags the particle along.
+angles from the top downwards, seen from half the droplet's height. A uniform
+horizontal body force holds the droplet against the particle's pull.
 
 The force of liquid and membrane on the particle is split along the undisturbed surface's normal,
 outwards, and its tangent, downwards. The normal part is the larger one; the tangential one points
