@@ -1,4 +1,4 @@
-"""Particles of a droplet: where they may be, all solids that its membrane meets, mirror planes."""
+"""Particles of a droplet: where they may be, which way they are dry, mirror planes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,10 @@ import numpy as np
 from ..arrays import Array
 from ..checks import record
 from ..errors import SceneError
-from ..solids import Sphere, SphereLattice, Spheres
+from ..solids import Sphere, Spheres
 from ..surface.surface import Surface
 from .liquid import MODELS, Model
 
-REACH = 2.0
-"""Distance from the axis, over the droplet's length, within which asperities of a lattice count."""
 FAR = 0.3
 """Gap between a particle and the start, over the droplet's length, that no meniscus spans."""
 
@@ -44,24 +42,13 @@ def check_particles(particles: Sequence[Sphere]) -> tuple[Sphere, ...]:
     return tuple(particles)
 
 
-def crowd(
-    asperities: SphereLattice | Spheres | None, particles: Sequence[Sphere], length: float
-) -> Spheres:
-    """Asperities within reach of a droplet, then its particles, as one list."""
-    centers = [np.array([each.center for each in particles]).reshape(-1, 3)]
-    radii = [np.array([each.radius for each in particles])]
-    angles = [np.array([each.contact_angle for each in particles])]
-    if asperities is not None:
-        if isinstance(asperities, SphereLattice):
-            near = asperities.within(REACH * length)
-            angle = np.full(len(near), asperities.contact_angle)
-        else:
-            near = np.arange(len(asperities.centers))
-            angle = np.asarray(asperities.contact_angle)
-        centers.insert(0, asperities.center_of(near))
-        radii.insert(0, asperities.radius_of(near))
-        angles.insert(0, angle)
-    return Spheres(np.concatenate(angles), np.concatenate(centers), np.concatenate(radii))
+def as_list(particles: Sequence[Sphere]) -> Spheres:
+    """Particles as one solid, in their order."""
+    return Spheres(
+        [each.contact_angle for each in particles],
+        [each.center for each in particles],
+        [each.radius for each in particles],
+    )
 
 
 def towards_liquid(start: Surface, particles: Sequence[Sphere], length: float) -> Array:

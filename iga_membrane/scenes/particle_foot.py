@@ -9,7 +9,7 @@ from ..solids import Plane
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import TrimmedContactLine
-from .beside import crowd, mirrored_model, towards_liquid
+from .beside import as_list, mirrored_model, towards_liquid
 from .foot import Foot, Question, rest_of, sector_of
 from .liquid import MODELS
 from .round_patch import of_droplet, of_pancake, round_patch
@@ -51,7 +51,7 @@ def with_particles(parts: Question) -> Foot:
     patch = round_patch(of_pancake(rest.pancake), local, mesh, 2 * sector.copies)
     start = patch.surface(of_pancake(rest.pancake))
     mesh = replace(mesh, elements=start.space.bases[1].elements)
-    solid = crowd(None, parts.particles, scale.length)
+    solid = as_list(parts.particles)
     toward = towards_liquid(start, local, 1.0) @ scale.axes.T
     line = TrimmedContactLine(parts.liquid.surface_tension, solid, toward)
     surface = start.moved(scale.to_world(start.points))

@@ -62,7 +62,7 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
         if len(before.multipliers) == assembly.multipliers:
             multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)
-    if result.status in FAILED and assembly.trim is not None:
+    if result.status in FAILED and assembly.trim is not None and not scene.particles:
         result = _firmly(scene, assembly, start, multipliers, options) or result
     if before is not None:
         result.iterations = before.iterations + result.iterations
