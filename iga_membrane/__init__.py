@@ -44,6 +44,8 @@ _HOME = {
     "solver.contact_line": ("contact_line",),
     "analysis.convergence": ("Study", "convergence_study"),
     "analysis.critical": ("Crossing", "critical_value"),
+    "analysis.pull_off": ("PullOff", "pull_off"),
+    "analysis.self_cleaning": ("SelfCleaning", "Verdict", "self_cleaning"),
     "analysis.sweep": ("Sweep", "sweep"),
     "view.picture": ("plot",),
     "view.export": ("save",),

@@ -36,6 +36,7 @@ from .foot import (
     with_rim,
 )
 from .liquid import Discretization, Liquid, with_defaults
+from .moving import check_fixed, fixed, moving
 from .particle_foot import with_particles
 from .scene import FreeEdge, Ramp, Scene, described_particle
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
@@ -82,8 +83,8 @@ def sessile_droplet(
     contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
         through the sphere or the asperities; "adhesion", it lies on asperities that attract it, for
         angles near 180 degrees; "auto" chooses.
-    particles : fixed spheres on its surface, with contact angles and densities; the membrane passes
-        through them.
+    particles : spheres on its surface, with contact angles, densities and motions; the membrane
+        passes through them.
     membrane : the paper's formulation, with its own penalty, instead of a contact line as the
         membrane's edge; on a plane, below 180 degrees.
 
@@ -95,6 +96,7 @@ def sessile_droplet(
     """
     liquid, asked = with_defaults(liquid, discretization)
     record("substrate", substrate, Plane, Sphere, SphereLattice, Spheres)
+    check_fixed(substrate)
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
@@ -120,7 +122,7 @@ def sessile_droplet(
         penetration_tolerance,
     )
     grains = check_particles(particles)
-    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, grains)
+    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, fixed(grains))
     built = with_particles(parts) if grains else foot_of(parts)
     sector = built.sector
     if isinstance(substrate, Plane):
@@ -128,17 +130,21 @@ def sessile_droplet(
         terms += [Centroid(axis) for axis in free if not grains or axis in hold]
     pull = float(np.linalg.norm(acceleration))
 
+    def again(**changed: Any) -> Scene:
+        given: dict[str, Any] = {
+            "substrate": substrate,
+            "volume": volume,
+            "liquid": liquid,
+            "gravity": [float(g) for g in acceleration],
+            "discretization": replace(asked, model=sector.model),
+            "hold": hold,
+            "contact_line": contact_line,
+            "particles": fixed(grains),
+        }
+        return sessile_droplet(**given | changed)
+
     def at(size: float) -> Scene:
-        return sessile_droplet(
-            substrate,
-            volume=volume,
-            liquid=liquid,
-            gravity=[size / pull * g for g in acceleration],
-            discretization=replace(asked, model=sector.model),
-            hold=hold,
-            contact_line=contact_line,
-            particles=grains,
-        )
+        return again(gravity=[size / pull * g for g in acceleration])
 
     # at 180 degrees on a plane there is nothing to start from without gravity
     has_way = isinstance(substrate, Sphere) or (
@@ -157,7 +163,7 @@ def sessile_droplet(
         directions=built.directions,
         ramp=ramp,
         substrate=substrate,
-        particles=grains,
+        particles=fixed(grains),
         acceleration=vector("gravity", acceleration),
         liquid_density=liquid.density,
         hold="" if hold == "none" else hold,
@@ -168,13 +174,13 @@ def sessile_droplet(
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
     if grains and isinstance(substrate, Plane):
-        alone = sessile_droplet(
-            substrate,
-            volume=volume,
-            liquid=liquid,
-            gravity=[float(g) for g in acceleration],
-        )
-        return _with_particles(replace(scene, start_from=built.start_from), alone)
+        alone = again(particles=(), hold="none", discretization=Discretization())
+        scene = _with_particles(replace(scene, start_from=built.start_from), alone)
+        line = built.terms[-1]
+        assert isinstance(line, TrimmedContactLine)
+        assert line.toward is not None
+        toward, gamma = line.toward, liquid.surface_tension
+        return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if built.predictor:
         return _with_start(scene, terms, built)
     if not built.tangent:
@@ -185,13 +191,7 @@ def sessile_droplet(
 
     def below(angle: float) -> Scene:
         assert isinstance(substrate, Plane)
-        return sessile_droplet(
-            replace(substrate, contact_angle=angle),
-            volume=volume,
-            liquid=liquid,
-            gravity=[float(g) for g in acceleration],
-            discretization=replace(asked, model=sector.model),
-        )
+        return again(substrate=replace(substrate, contact_angle=angle))
 
     return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, below))
 

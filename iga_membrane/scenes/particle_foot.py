@@ -57,10 +57,14 @@ def with_particles(parts: Question) -> Foot:
     surface = start.moved(scale.to_world(start.points))
 
     # far from the line its conormals may point against the membrane's normals
-    support = [Sliding("xi2=0", fade=4)]
+    support = [Sliding("xi2=0", reach=REACH)]
 
     def from_alone(alone: Surface) -> Surface:
         """Start, in the scene's scale, from the droplet without particles."""
         return patch.surface(of_droplet(alone))
 
     return Foot(surface, sector, mesh, [rest.line, line], support, start_from=from_alone)
+
+
+REACH = 0.5
+"""Distance over which the line's conormals turn into the membrane's normals."""

@@ -24,8 +24,13 @@ from ..surface.surface import Surface
 from .liquid import Mesh
 from .start import Pancake, meniscus
 
-ROUND, ALONG = 48, 18
-"""Elements round a particle, and from the droplet's line to the particle at least."""
+ROUND, ALONG = 48, 14
+"""Elements round a particle, and from the droplet's line to the particle's at least."""
+NARROWER, FINER = 0.25, 0.6
+"""``|zeta|`` of a particle's line so near to the droplet's that there is little membrane between
+them, and the part of elements that is added then."""
+DENSER = 0.33
+"""Distance of elements along the droplet's line at a particle, over their mean, at least."""
 COARSEST = 0.12
 """Length of an element at the droplet's line, over the droplet's length, at most."""
 ACROSS = 3.0
@@ -61,7 +66,8 @@ class RoundPatch:
         aim = self.pole / abs(self.pole) if self.pole else 1.0
         half = 0.5 * (ring_angles(space) - np.angle(aim))[:, None]
         # Moebius maps act on half the azimuth's tangent by a factor
-        factor = ((1.0 + abs(self.pole)) / (1.0 - abs(self.pole))) ** size
+        closeness = (1.0 - abs(self.pole)) / (1.0 + abs(self.pole))
+        factor = (max(closeness, DENSER) / closeness) ** size
         turn = aim * np.exp(2j * np.arctan2(factor * np.sin(half), np.cos(half)))
         values = _droplet(meridian, self.pole, size * turn)
         values[:, 0, 2] = 0.0
@@ -96,10 +102,11 @@ def round_patch(
 
     spot = min(0.5, line[least] / scale_at(0.0))
     span = float(np.arcsinh(1.0 / spot))
-    along = mesh.elements
+    along, outside = mesh.elements, 1.0 - np.arcsinh(1.0) / span
     if along < 0:
-        around = max(ROUND, 2.0 * np.pi * meridian.r[0] / COARSEST)
-        along = max(ALONG, int(np.ceil(around * span / (2.0 * np.pi))))
+        finer = 1.0 + FINER * min(spot / NARROWER, 1.0) ** 2
+        around = max(finer * ROUND, 2.0 * np.pi * meridian.r[0] / COARSEST)
+        along = int(np.ceil(max(finer * ALONG / outside, around * span / (2.0 * np.pi))))
         for own, place in zip(line, places, strict=True):
             zeta = (place - pole) / (1.0 - np.conj(pole) * place)
             size = max(abs(zeta), spot) * scale_at(zeta) * span

@@ -83,6 +83,28 @@ class FreeEdge:
 
 
 @dataclass(frozen=True)
+class FreeParticles:
+    """Particles that move along lines until the forces along them vanish.
+
+    Attributes
+    ----------
+    which : (k,) their numbers.
+    lines : (k, 3) unit vectors; radii : (k,) of the particles; tension : of the liquid.
+    outward : (k,) part of the direction out of the liquid along each line.
+    least : (k,) displacement at which the substrate stops a particle, -inf without.
+    scene_at : displacements (k,) along the lines to the scene with its particles fixed there.
+    """
+
+    which: Array
+    lines: Array
+    radii: Array
+    tension: float
+    outward: Array
+    least: Array
+    scene_at: Callable[[Array], Scene] = field(repr=False)
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything a solve needs to know.
 
@@ -104,6 +126,7 @@ class Scene:
     start_from : that equilibrium's surface to one of this scene's space, both in their scales, if
         the spaces differ.
     free_edge : the way to find a fixed edge's place at 180 degrees.
+    free_particles : those that move.
     substrate : the solid that the membrane touches, for its kind and pictures.
     particles : spheres on which it pulls too.
     hold : axes along which the user asked for the centroid to be held.
@@ -125,6 +148,7 @@ class Scene:
     predictor: Scene | None = field(default=None, repr=False)
     start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
+    free_particles: FreeParticles | None = field(default=None, repr=False)
     substrate: Plane | Sphere | SphereLattice | Spheres | None = None
     particles: Sequence[Sphere] = ()
     hold: str = ""
@@ -201,9 +225,10 @@ class Scene:
 
     @property
     def loose_axes(self) -> str:
-        """Axes along which the membrane is free to slide on a plane."""
+        """Axes along which the membrane is free to slide on a plane; particles hold it."""
         on_plane = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
-        if not on_plane or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports):
+        held = self.particles or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports)
+        if not on_plane or held:
             return ""
         return "".join(axis for axis in "xy" if axis not in self.sector.mirrored)
 
@@ -268,5 +293,5 @@ def described_particle(particle: Sphere) -> dict[str, Any]:
         "center": list(particle.center),
         "density": particle.density,
         "contact_angle": particle.contact_angle,
-        "motion": "fixed",
+        "motion": particle.motion,
     }

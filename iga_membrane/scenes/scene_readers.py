@@ -9,7 +9,7 @@ import numpy as np
 
 from ..checks import choice, number, vector
 from ..errors import SceneError
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import MOTIONS, Plane, Sphere, SphereLattice, Spheres
 from .asperities import STARTS
 from .cell import asperity_cell
 from .droplet import HOLDS, sessile_droplet
@@ -22,7 +22,6 @@ from .sheet import liquid_sheet
 
 Tables = dict[str, Mapping[str, Any]]
 
-MOTIONS = ("fixed", "vertical", "normal", "resting")
 SUBSTRATES = ("plane", "sphere", "sphere_lattice", "spheres", "none")
 
 
@@ -201,11 +200,12 @@ def _particle(field: str, given: Mapping[str, Any]) -> Sphere:
     for key in ("radius", "center", "contact_angle"):
         if key not in given:
             raise SceneError(f"{field}.{key}: missing; a particle needs it")
-    motion = given.get("motion", "fixed")
-    if choice(f"{field}.motion", motion, MOTIONS) != "fixed":
-        raise later(f'{field}.motion = "{motion}"')
     return Sphere(
-        given["contact_angle"], given["radius"], given["center"], given.get("density", 0.0)
+        given["contact_angle"],
+        given["radius"],
+        given["center"],
+        given.get("density", 0.0),
+        choice(f"{field}.motion", given.get("motion", "fixed"), MOTIONS),
     )
 
 

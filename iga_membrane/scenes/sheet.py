@@ -5,6 +5,7 @@ The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from types import NoneType
 from typing import Any
@@ -38,6 +39,7 @@ from ..terms import (
     Volume,
 )
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
+from .moving import moving
 from .scene import FreeEdge, Ramp, Scene, described_particle
 from .sheet_through import sheet_through
 from .start import check_net, funnel
@@ -68,7 +70,7 @@ def liquid_sheet(
 
     Parameters
     ----------
-    particle : fixed sphere that the sheet touches from above, with contact angle and density.
+    particle : sphere that the sheet touches from above, with contact angle, density and motion.
     size : edge length of the square rim, or diameter of the circular one.
     boundary : "square" or "circle".
     gravity : acceleration along -z; it weighs the particle, and the sheet if ``liquid_weight``.
@@ -172,7 +174,7 @@ def liquid_sheet(
             own = particle
 
             def at_angle(angle: float) -> Scene:
-                return again(particle=Sphere(angle, own.radius, own.center, own.density))
+                return again(particle=replace(own, contact_angle=angle))
 
             if particle.contact_angle != EASY and not tangent:
                 values = (EASY, particle.contact_angle)
@@ -199,22 +201,29 @@ def liquid_sheet(
         liquid_density=liquid.density,
         description=described,
     )
-    if particle is None or not tangent:
+    if particle is None:
         return scene
+    if tangent:
+        scene = replace(scene, free_edge=_free_edge(scene, again))
+    liquid_above = np.array([[0.0, 0.0, 1.0]])
+    return moving(
+        scene, [particle], liquid_above, gamma, lambda at: again(particle=at[0], start=start)
+    )
+
+
+def _free_edge(scene: Scene, again: Callable[..., Scene]) -> FreeEdge:
+    """The way to the edge on a particle at 180 degrees."""
+    particle = scene.substrate
+    assert isinstance(particle, Sphere)
     ball = Scale(particle.radius).local_sphere(particle)
 
     def edge_at(polar: float) -> Scene:
-        return replace(scene, surface=_with_edge(surface, particle, polar))
+        return replace(scene, surface=_with_edge(scene.surface, particle, polar))
 
-    return replace(
-        scene,
-        free_edge=FreeEdge(
-            edge_at,
-            lambda at: _edge_polar(at, ball),
-            lambda angle: again(
-                particle=Sphere(angle, particle.radius, particle.center, particle.density)
-            ),
-        ),
+    return FreeEdge(
+        edge_at,
+        lambda at: _edge_polar(at, ball),
+        lambda angle: again(particle=replace(particle, contact_angle=angle)),
     )
 
 

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, Index
-from ..checks import contact_angle, number, vector
+from ..checks import choice, contact_angle, number, vector
 from ..errors import GeometryError
 from .nearest import Nearest, nearest_of_balls
+
+MOTIONS = ("fixed", "vertical", "normal", "resting")
 
 
 @dataclass(frozen=True)
@@ -23,12 +25,15 @@ class Sphere:
     radius : > 0.
     center : its centre.
     density : of the solid, >= 0; the weight of a particle.
+    motion : how a particle moves until the force along its way vanishes: "fixed", "vertical",
+        "normal" to the liquid's surface, or "resting" on the substrate unless it is lifted.
     """
 
     contact_angle: float
     radius: float
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
     density: float = 0.0
+    motion: str = "fixed"
 
     def __post_init__(self) -> None:
         angle = contact_angle("substrate.contact_angle", self.contact_angle)
@@ -37,6 +42,7 @@ class Sphere:
         object.__setattr__(self, "radius", radius)
         object.__setattr__(self, "center", vector("substrate.center", self.center))
         number("particle.density", self.density, least=0.0)
+        choice("particle.motion", self.motion, MOTIONS)
 
     def offset(self, points: ArrayLike) -> tuple[Array, Array]:
         """Vectors from the centre to points (..., 3) and their lengths."""

@@ -44,7 +44,7 @@ def contact_record(
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
     wet = assembly.copies * assembly.edges.wetting(surface.points)[1] * scale.length**2
-    rim = found.get("contact_radius", float(np.sqrt(wet / np.pi)))
+    rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
     return {
         "wet_solids": 1,
         "wet_area": wet,

@@ -34,6 +34,7 @@ class ParticleForces:
 
     Attributes
     ----------
+    center : (3,) of the particle, where it came to rest if it is free.
     weight : (3,) F_G; contact_line : F_CL; hydrostatic : F_H; buoyancy : F_B.
     torque : (3,) about the centre: zero, as the energy does not change when a sphere of one
         contact angle turns.
@@ -41,6 +42,7 @@ class ParticleForces:
         from the particle into the liquid, which for a sheet is up.
     """
 
+    center: Array
     weight: Array
     contact_line: Array
     hydrostatic: Array
@@ -201,7 +203,17 @@ def particle_forces(
         float(contact[2]),
         float(buoyancy[2]),
     )
-    return (ParticleForces(weight, contact, pressed - buoyancy, buoyancy, np.zeros(3), paper),)
+    return (
+        ParticleForces(
+            np.array(particle.center),
+            weight,
+            contact,
+            pressed - buoyancy,
+            buoyancy,
+            np.zeros(3),
+            paper,
+        ),
+    )
 
 
 def _weight_on_cap(line: ContactLine, solid: Sphere) -> Array:

@@ -40,6 +40,8 @@ begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
 step, and before; less while it rolls to and fro."""
+BELOW = 1e-3
+"""Depth below a plane on the way, over the scene's length; at its end the audit allows none."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -313,7 +315,7 @@ def _search(
         value = merit(energies.total, energies.constraints)
         if (
             energies.regular_after(start)
-            and not (assembly.above_plane and energies.lowest < -1e-9)
+            and not (assembly.above_plane and energies.lowest < -BELOW)
             and (uphill or value <= begin + 1e-4 * part * slope + noise)
         ):
             return part, trial

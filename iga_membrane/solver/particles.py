@@ -52,10 +52,11 @@ def forces_on_particles(
     order = trim.term.particle(found.which)
     result = []
     for k, particle in enumerate(scene.particles):
+        center = np.array(particle.center)
         weight = 4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g
         none = np.zeros(3)
         if k not in order:
-            result.append(ParticleForces(weight, none, none, none, none, {}))
+            result.append(ParticleForces(center, weight, none, none, none, none, {}))
             continue
         i = int(np.flatnonzero(order == k)[0])
         buoyancy = -scene.liquid_density * g * caps[i] * scale.length**3
@@ -67,6 +68,8 @@ def forces_on_particles(
         parts = (float(part @ axis) for part in (weight, contact, -buoyancy))
         paper = paper_forces(particle, level, height, *parts)
         result.append(
-            ParticleForces(weight, contact, pressure - buoyancy, buoyancy, np.zeros(3), paper)
+            ParticleForces(
+                center, weight, contact, pressure - buoyancy, buoyancy, np.zeros(3), paper
+            )
         )
     return tuple(result)

@@ -21,7 +21,7 @@ SHALLOW = 0.6
 """Part of its depth under a flat membrane below which a spot is pressed to that depth."""
 WIDE = 1.5
 """Reach of that press over the sphere's radius."""
-FIRM = 5.0
+FIRM = 20.0
 """Firmness of ties with which a failed solve begins anew: steadier, but the angle is less exact."""
 FAILED = Status.STALLED, Status.MAX_ITER
 NEARBY = 1.0
@@ -62,7 +62,7 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
         if len(before.multipliers) == assembly.multipliers:
             multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)
-    if result.status in FAILED and assembly.trim is not None and not scene.particles:
+    if result.status in FAILED and assembly.trim is not None:
         result = _firmly(scene, assembly, start, multipliers, options) or result
     if before is not None:
         result.iterations = before.iterations + result.iterations

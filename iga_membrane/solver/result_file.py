@@ -75,6 +75,7 @@ def _forces(found: ParticleForces) -> dict[str, Any]:
     }
     vectors: dict[str, Any] = {name: value.tolist() for name, value in parts.items()}
     return vectors | {
+        "center": found.center.tolist(),
         "normal": float(found.effective[2]),
         "tangential": float(np.hypot(*found.effective[:2])),
         "lifts": found.lifts,

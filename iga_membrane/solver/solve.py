@@ -17,6 +17,7 @@ from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
 from .load_stepping import LoadPath, LoadStep, load_stepping
+from .moving import settled
 from .newton import NewtonOptions, NewtonResult, newton
 from .options import ON_FAIL, SolverOptions
 from .predictor import first, settings_of
@@ -62,6 +63,8 @@ def solve(
     record("options", options, SolverOptions)
     choice("on_fail", on_fail, ON_FAIL)
     started = process_time()
+    if scene.free_particles is not None:
+        return _delivered(_with_free_particles(scene, options, started), on_fail)
     _check_memory(scene, options)
     if scene.ramp is not None and scene.ramp.asked:
         solution = walk(scene.ramp, options, report)[-1]
@@ -92,6 +95,18 @@ def solve(
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
             solution = conclude(outcome, assembly, options, started)
     return _delivered(replace(solution, scene=scene), on_fail)
+
+
+def _with_free_particles(scene: Scene, options: SolverOptions, started: float) -> Solution:
+    """The equilibrium of a scene whose particles move; every solve within one limit."""
+
+    def solve_fixed(at: Scene) -> Solution:
+        left = max(started + options.max_cpu_s - process_time(), 1e-3)
+        return solve(at, replace(options, max_cpu_s=left, start=None), on_fail="return")
+
+    if options.start is not None:
+        raise SceneError("solver.start: not available yet with particles that move; leave it out")
+    return settled(scene, solve_fixed)
 
 
 def _halfway(scene: Scene, options: SolverOptions) -> bool:
@@ -182,7 +197,8 @@ def _iterate(
         outcome = Outcome(scene, direct, steps, progress=path.progress)
         if partial:
             outcome = Outcome(path.scene, path.result, steps, path.bracket, path.progress)
-    if direct.status is not None and outcome.bracket is None and assembly.contact is None:
+    own_start = assembly.contact is None and scene.predictor is None
+    if direct.status is not None and outcome.bracket is None and own_start:
         assembly.load(scene)
         nearest = newton(assembly, start, None, grading, replace(settings, near=np.inf))
         steps = [*steps, LoadStep(1.0, len(nearest.iterations), nearest.status)]

@@ -67,7 +67,8 @@ class Ties:
         elements of a size over the contact length; ``loose`` if there are particles."""
         steep = min(steepness / (0.25 * np.pi), 1.0)
         wanted = STRENGTH[1] * steep**4 * (element / COARSE) ** 2
-        self.strength = LOOSE if loose else self.firmness * float(np.clip(wanted, *STRENGTH))
+        usual = LOOSE if loose else float(np.clip(wanted, *STRENGTH))
+        self.strength = self.firmness * usual
         none = np.zeros(len(self._elements), bool)
         self._held, self._touched, self._last = none, none, (none, none)
         self._calls = 0

@@ -138,9 +138,8 @@ class Spines:
     def on(self, surface: Surface) -> Motion:
         """Directions re-based on a surface: its normals, blended into a sliding edge's plane.
 
-        The blend ``d = (1 - w) m + w n``, with ``1 - w`` a power of the parametric distance from
-        the other end, is one smooth field over the patch; a jump in it would cost orders of
-        magnitude.
+        The blend ``d = (1 - w) m + w n``, with ``1 - w`` the parametric distance from the other
+        end, is one smooth field over the patch; a jump in it would cost orders of magnitude.
         """
         if self._given is not None:
             rows = np.concatenate([self._given, np.zeros((1, 3)), self.shifts])
@@ -151,12 +150,10 @@ class Spines:
             along, end = EDGES[support.edge]
             basis = space.bases[1 - along]
             parameter = (basis.abscissae - basis.breaks[0]) / (basis.breaks[-1] - basis.breaks[0])
-            w = 1.0 - (1.0 - np.abs(parameter - end)) ** support.fade
-            rim = _conormals(surface, support)
-            if along == 0:
-                normals = (1 - w)[None, :, None] * rim[:, None] + w[None, :, None] * normals
-            else:
-                normals = (1 - w)[:, None, None] * rim[None] + w[:, None, None] * normals
+            carried = np.expand_dims(1.0 - np.abs(parameter - end), along)[..., None]
+            carried = carried * _near(surface, support)
+            rim = np.expand_dims(_conormals(surface, support), 1 - along)
+            normals = carried * rim + (1.0 - carried) * normals
         directions = _points_of_field(space, normals)
         for first, second in self._seams:
             mean = directions[first] + directions[second]
@@ -238,6 +235,16 @@ class Spines:
                 "parallel or zero; start from a regular parametrization"
             )
         return np.asarray(c / length)
+
+
+def _near(surface: Surface, support: Sliding) -> Array:
+    """(n1, n2, 1) falls from 1 at a sliding edge over its reach."""
+    along, end = EDGES[support.edge]
+    net = surface.net if end == 0 else np.flip(surface.net, 1 - along)
+    steps = np.linalg.norm(np.diff(net, axis=1 - along), axis=-1, keepdims=True)
+    away = np.insert(np.cumsum(steps, axis=1 - along), 0, 0.0, axis=1 - along)
+    near = np.exp(-((away / support.reach) ** 2))
+    return near if end == 0 else np.flip(near, 1 - along)
 
 
 def _conormals(surface: Surface, support: Sliding) -> Array:

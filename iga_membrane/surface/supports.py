@@ -33,12 +33,13 @@ class Sliding:
     ----------
     edge : as for :class:`Fixed`.
     solid : what it slides on; None is the plane z = 0.
-    fade : power with which the directions of the edge fade towards the other end of the patch.
+    reach : distance, over the scene's length, over which the directions of the edge fade; they fade
+        towards the other end of the patch as well.
     """
 
     edge: str = "xi2=0"
     solid: Sphere | None = None
-    fade: int = 1
+    reach: float = float("inf")
 
     def __post_init__(self) -> None:
         choice("edge", self.edge, EDGES)
