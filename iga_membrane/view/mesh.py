@@ -48,20 +48,14 @@ def membrane(
             s = np.linspace(s[i[0]], s[i[-1]], len(s))
             t = np.linspace(t[j[0]], t[j[-1]], len(t))
     k = surface.at(np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1))
-    x, y, z = (np.ascontiguousarray(k.position[..., i])[..., None] for i in range(3))
-    mesh = pv.StructuredGrid(x, y, z).extract_surface(algorithm="dataset_surface")
-    order = _match(mesh.points, k.position.reshape(-1, 3))
-    mesh.point_data.active_normals = k.normal.reshape(-1, 3)[order]
+    number = np.arange(k.normal[..., 0].size).reshape(k.normal.shape[:2])
+    corners = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
+    quads = np.stack(corners, axis=-1).reshape(-1, 4)
+    mesh = pv.PolyData.from_regular_faces(k.position.reshape(-1, 3), quads)
+    mesh.point_data.active_normals = k.normal.reshape(-1, 3)
     if name is not None:
-        mesh[name] = field(solution, name, k).reshape(-1)[order]
+        mesh[name] = field(solution, name, k).ravel()
     return mesh
-
-
-def _match(points: Any, source: Any) -> Any:
-    """Which source point each mesh point is (VTK stores single precision and reorders)."""
-    from scipy.spatial import cKDTree
-
-    return cKDTree(source).query(points)[1]
 
 
 def trimming_solid(solution: Solution) -> Plane | Sphere | SphereLattice | Spheres | None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..solids import Plane
 from .mesh import membrane, outside, trimming_solid
 
@@ -22,8 +20,8 @@ def triangles(solution: Solution, resolution: int = 129) -> Any:
 
     Notes
     -----
-    A droplet on a plane without particles is closed by its wetted area and has the liquid's volume. Elsewhere it is
-    the liquid-gas surface, open at its contact lines.
+    A droplet on a plane without particles is closed by its wetted area and has the liquid's
+    volume. Elsewhere it is the liquid-gas surface, open at its contact lines.
     """
     mesh = membrane(solution, resolution).triangulate()
     through = trimming_solid(solution)
@@ -41,6 +39,5 @@ def triangles(solution: Solution, resolution: int = 129) -> Any:
 def write_shape(solution: Solution, path: str) -> None:
     """Write the triangles by the file's ending."""
     made = triangles(solution)
-    made.points = np.asarray(made.points, float)
     made.clear_data()
     made.save(path)

@@ -94,4 +94,4 @@ def _plain(measures: Mapping[str, float]) -> dict[str, float]:
 
 
 def _xyz(name: str, vector: Iterable[float]) -> dict[str, float]:
-    return {f"{name}{axis}": float(v) for axis, v in zip("xyz", vector, strict=True)}
+    return {f"{name}{axis}": float(v) + 0.0 for axis, v in zip("xyz", vector, strict=True)}
