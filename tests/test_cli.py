@@ -86,7 +86,7 @@ def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
 def test_an_unknown_ending_is_refused(tmp_path):
     solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
     with pytest.raises(iga.OutputError, match="ending must be"):
-        solution.save(tmp_path / "drop.stl")
+        solution.save(tmp_path / "drop.step")
 
 
 def test_the_module_runs_as_a_process_in_any_locale(scene, tmp_path):

@@ -58,7 +58,7 @@ def plot_curves(
     names = [y] if isinstance(y, str) else list(y)
     across = _column(table, x)
     groups = np.zeros(len(across)) if by is None else _column(table, by)
-    made, axes = figure()
+    made, axes = figure(path)
     for k, name in enumerate(names):
         values = _column(table, name)
         for j, group in enumerate(np.unique(groups)):
@@ -119,7 +119,7 @@ def plot_phases(
         )
     grid = np.full((len(ys), len(xs)), np.nan)
     grid[j, i] = values
-    made, axes = figure()
+    made, axes = figure(path)
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 

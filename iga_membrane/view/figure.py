@@ -14,18 +14,27 @@ DPI = 200
 """Dots per inch of pictures without vectors."""
 
 
-def figure(width: float = 5.0, height: float = 3.75, rows: int = 1, **options: Any) -> Any:
-    """A figure (inches) and its axes, beneath each other; no window is opened.
+def figure(
+    path: str | os.PathLike[str],
+    width: float = 5.0,
+    height: float = 3.75,
+    rows: int = 1,
+    **options: Any,
+) -> Any:
+    """A figure (inches) that can be written to a path, and its axes, beneath each other.
 
     Raises
     ------
     OutputError
-        If matplotlib is not installed.
+        If matplotlib is not installed, or does not know the path's ending.
     """
     optional("matplotlib", "a plot")
     from matplotlib.figure import Figure
 
     made = Figure(figsize=(width, height), layout="constrained")
+    known = made.canvas.get_supported_filetypes()
+    if Path(path).suffix.removeprefix(".") not in known:
+        raise OutputError(f"{path}: ending must be one of {', '.join('.' + k for k in known)}")
     return made, made.subplots(rows, 1, **options)
 
 
@@ -35,10 +44,6 @@ def write_figure(made: Any, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     OutputError
-        An ending that matplotlib does not know, or a place that cannot be written.
+        A place that cannot be written.
     """
-    known = made.canvas.get_supported_filetypes()
-    ending = Path(path).suffix.removeprefix(".")
-    if ending not in known:
-        raise OutputError(f"{path}: ending must be one of {', '.join('.' + k for k in known)}")
     write_whole(Path(path), lambda file: made.savefig(file, dpi=DPI))

@@ -27,7 +27,7 @@ def plot_side(
     path: str | os.PathLike[str],
     *,
     azimuth: float = 0.0,
-    resolution: int = 193,
+    resolution: int = 97,
 ) -> tuple[float, float]:
     """Draw a droplet's shadow with its profile and apparent contact angles.
 
@@ -57,7 +57,7 @@ def plot_side(
     rough = isinstance(scene.substrate, (SphereLattice, Spheres))
     if rough and scene.lateral_load:
         raise SceneError("plot_side: a leaning droplet on asperities has no apparent angle")
-    made, axes = figure()
+    made, axes = figure(path)
     turn = np.radians(azimuth)
     right = np.array([np.cos(turn), np.sin(turn), 0.0])
     mesh = membrane(solution, resolution)

@@ -23,7 +23,7 @@ BESIDE = 1e-4
 
 
 def plot_section(
-    solution: Solution, path: str | os.PathLike[str], *, resolution: int = 257
+    solution: Solution, path: str | os.PathLike[str], *, resolution: int = 129
 ) -> float | None:
     """Draw the section in the plane y = 0 of the scene's frame.
 
@@ -48,9 +48,9 @@ def plot_section(
     exact = _axisymmetric(solution)
     panels: Any
     if exact is None:
-        made, axes = figure(height=3.2)
+        made, axes = figure(path, height=3.2)
     else:
-        made, panels = figure(height=4.6, rows=2, height_ratios=(2.6, 1.0))
+        made, panels = figure(path, height=4.6, rows=2, height_ratios=(2.6, 1.0))
         axes = panels[0]
     scale = solution.scene.units
     mesh = membrane(solution, resolution)
