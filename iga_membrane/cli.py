@@ -115,6 +115,12 @@ def _info(given: argparse.Namespace) -> int:
 def _plot(given: argparse.Namespace) -> int:
     state = _state_of(Path(given.result))
     out = Path(given.out) if given.out else state.with_name("picture.png")
+    words = {
+        name: getattr(given, name) for name in ("color", "view", "focus", "traction", "forces")
+    }
+    asked = {name: value for name, value in words.items() if value}
+    if asked and given.kind != "space":
+        raise SceneError(f"--{next(iter(asked))}: has no meaning with --kind {given.kind}")
     check_folder(out.parent)
     solution = _load(state)
     if given.kind == "section":
@@ -126,9 +132,7 @@ def _plot(given: argparse.Namespace) -> int:
 
         plot_side(solution, out)
     else:
-        asked = {"color": given.color, "view": given.view, "focus": given.focus}
-        marks = {"traction": given.traction, "forces": given.forces}
-        solution.plot(out, **{k: v for k, v in asked.items() if v is not None}, **marks)
+        solution.plot(out, **asked)
     _say(str(out))
     return SOLVED
 

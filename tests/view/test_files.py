@@ -163,6 +163,8 @@ def test_forces_as_a_table_are_those_of_the_solution(sheet, tmp_path):
     assert numbers([row], "x", "y", "z")[0] == pytest.approx([0.3, 0.0, -1.0])
     assert numbers([row], "F_x", "F_y", "F_z")[0] == pytest.approx(forces.effective)
     assert numbers([row], "F_G_x", "F_G_y", "F_G_z")[0] == pytest.approx(forces.weight)
+    assert sheet.row()["F_e_z"] == forces.effective[2]
+    assert sheet.row()["lifts"] is forces.lifts
 
 
 def test_forces_as_a_table_carry_the_weight(cell, solution, tmp_path):
