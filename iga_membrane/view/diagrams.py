@@ -23,6 +23,10 @@ LABELS = {
 """Column to what is written on an axis; other columns stand for themselves."""
 
 
+STYLES = ("-", "--", ":", "-.")
+"""Of the lines of several columns."""
+
+
 class Table(Protocol):
     """What has columns: a sweep or a path."""
 
@@ -64,18 +68,20 @@ def plot_curves(
         for j, group in enumerate(np.unique(groups)):
             some = np.flatnonzero((groups == group) & np.isfinite(values))
             some = some[np.argsort(across[some], kind="stable")]
-            parts = [_label(name)] * (len(names) > 1) + [f"{by} = {group:g}"] * (by is not None)
-            style = ("-", "--", ":", "-.")[k % 4]
-            axes.plot(
-                across[some], values[some], style, marker=".", color=f"C{j if by else k}",
-                label=", ".join(parts) or None,
-            )  # fmt: skip
+            first = f"{group:g}" if by is not None and k == 0 else None
+            look = {"ls": STYLES[k % len(STYLES)], "color": f"C{j}"}
+            axes.plot(across[some], values[some], marker=".", label=first, **look)
     low, high = axes.get_ylim()
     if low < 0.0 < high:
         axes.axhline(0.0, color="0.6", lw=0.8, zorder=0)
     axes.set(xlabel=_label(x), ylabel=_label(names[0]) if len(names) == 1 else "")
-    if by is not None or len(names) > 1:
-        axes.legend(frameon=False, fontsize=8)
+    if by is not None:
+        axes.legend(title=_label(by), title_fontsize=8, frameon=False, fontsize=8)
+    if len(names) > 1:
+        styles = [axes.plot([], [], ls, color="C0" if by is None else "black")[0]
+                  for ls in STYLES[: len(names)]]  # fmt: skip
+        made.legend(styles, [_label(n) for n in names], loc="outside upper center",
+                    ncols=2, frameon=False, fontsize=8)  # fmt: skip
     write_figure(made, path)
 
 
@@ -95,13 +101,14 @@ def plot_phases(
     table : a sweep over both parameters.
     path : of the picture; its ending chooses the format (.png, .pdf, .svg).
     x, y : the parameters along the axes.
-    of : measure or force whose sign tells the phases, "F_e_z", or a truth value, "lifts". Of a
-        number the line on which it vanishes is drawn between the points.
+    of : measure or force whose sign tells the phases, "F_e_z", or a truth value, "lifts". A
+        number is interpolated between the points, which are marked; a truth value is that of the
+        nearest one.
     names : of the phases where it is not positive and where it is.
 
     Notes
     -----
-    Points without a result are left white.
+    What has no result is left white.
 
     Raises
     ------
@@ -124,14 +131,20 @@ def plot_phases(
     from matplotlib.patches import Patch
 
     colours = ("#dfe3e8", "#7fb3d5")
-    phase = np.where(np.isnan(grid), np.nan, grid > 0.0)
-    axes.pcolormesh(xs, ys, phase, cmap=ListedColormap(colours), vmin=0, vmax=1, shading="nearest")
-    number = not set(np.unique(values[np.isfinite(values)])) <= {0.0, 1.0}
-    if number and np.nanmin(grid) < 0.0 < np.nanmax(grid):
-        axes.contour(xs, ys, np.ma.masked_invalid(grid), [0.0], colors="black", linewidths=1.2)
+    truth = set(np.unique(values[np.isfinite(values)])) <= {0.0, 1.0}
+    if truth or not np.nanmin(grid) < 0.0 < np.nanmax(grid):
+        phase = np.where(np.isnan(grid), np.nan, grid > 0.0)
+        map_of = ListedColormap(colours)
+        axes.pcolormesh(xs, ys, phase, cmap=map_of, vmin=0, vmax=1, shading="nearest")
+    else:
+        known = np.ma.masked_invalid(grid)
+        axes.contourf(xs, ys, known, [known.min() - 1.0, 0.0, known.max() + 1.0], colors=colours)
+        axes.contour(xs, ys, known, [0.0], colors="black", linewidths=1.2)
+    solved = np.isfinite(values)
+    axes.plot(across[solved], up[solved], ".", ms=2, color="0.45")
     axes.set(xlabel=_label(x), ylabel=_label(y))
     patches = [Patch(color=c, label=n) for c, n in zip(colours, names, strict=True)]
-    axes.legend(handles=patches, fontsize=8)
+    axes.legend(handles=patches, loc="upper right", fontsize=8)
     write_figure(made, path)
 
 
@@ -145,4 +158,4 @@ def _column(table: Table, name: str) -> Array:
 def _label(name: str) -> str:
     """The last part of a path in the scene file says what a parameter is."""
     plain = name.rsplit(".", 1)[-1]
-    return LABELS.get(plain, plain.replace("_", " "))
+    return LABELS.get(plain, plain if plain.startswith("F_") else plain.replace("_", " "))

@@ -38,15 +38,20 @@ def check_drawing() -> None:
         raise OutputError(f"pictures cannot be drawn on this machine: {REMEDY}")
 
 
-@cache
 def can_draw() -> bool:
-    """Whether one small picture can be drawn, tried in a process of its own.
+    """Whether one small picture can be drawn, tried once in a process of its own.
 
     Without the right driver VTK does not raise but kills the process.
     """
+    return trial().wait() == 0
+
+
+@cache
+def trial() -> subprocess.Popen[bytes]:
+    """That process; started early it costs no time."""
     _headless()
-    run = subprocess.run([sys.executable, "-c", _PROBE], capture_output=True, check=False)
-    return run.returncode == 0
+    quiet = subprocess.DEVNULL
+    return subprocess.Popen([sys.executable, "-c", _PROBE], stdout=quiet, stderr=quiet)
 
 
 def _headless() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import choice, vector
 from ..errors import SceneError
-from .drawing import check_drawing, pyvista
+from .drawing import check_drawing, pyvista, trial
 from .marks import add_forces, add_lines
 from .mesh import membrane, outside, trimming_solid
 from .solids import add_solids
@@ -83,19 +83,21 @@ def plot(
         If this machine cannot draw, with what to install.
     """
     choice("color", color, COLORS)
-    pv = pyvista()
-    if path is not None:
-        check_drawing()
-    plotter = pv.Plotter(off_screen=path is not None, window_size=size)
-    plotter.set_background("white")
     axes = solution.scene.units.axes
     eye = _eye(view, axes)
     middle, span, near = _frame(solution, focus, eye)
+    if path is not None:
+        trial()
+    pv = pyvista()
     name = None if color == "none" else color
     mesh = membrane(solution, resolution, name, near)
     through = trimming_solid(solution)
     if through is not None:
         mesh = outside(through, mesh)
+    if path is not None:
+        check_drawing()
+    plotter = pv.Plotter(off_screen=path is not None, window_size=size)
+    plotter.set_background("white")
     # arrows tangent to the membrane show through it
     shown = (0.7 if traction or forces else 1.0) if opacity is None else opacity
     look = LIQUID if name is None else _colours(solution, mesh, name, limits)
