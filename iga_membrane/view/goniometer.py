@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +48,8 @@ def plot_side(
     Raises
     ------
     SceneError
-        A scene that is no droplet on a substrate, or one that leans on asperities.
+        A scene that is no droplet on a substrate, one that leans on asperities, or one that lies
+        on a sphere at 180 degrees.
     OutputError
         If the file cannot be written, or matplotlib is not installed.
     """
@@ -69,25 +71,31 @@ def plot_side(
     _shadow(axes, flat[mesh.triangulate().regular_faces])
     _shade_solids(axes, solution, right, flat)
     if rough:
-        angles, feet = _of_profile(axes, solution)
+        sides = _of_profile(axes, solution)
     else:
-        angles, feet = _of_line(solution, right)
+        sides = _of_line(solution, right)
         if not scene.lateral_load and not scene.particles and isinstance(scene.substrate, Plane):
             _of_profile(axes, solution)
     long = 0.45 * float(np.ptp(flat[:, 0]))
-    for sign, angle, foot in zip((1.0, -1.0), angles, feet, strict=True):
-        way = long * np.array([sign * np.cos(np.radians(angle)), np.sin(np.radians(angle))])
-        axes.plot(*np.stack([foot, foot + way], axis=1), color=TANGENT, lw=1.2)
-        side = "right" if sign > 0 else "left"
+    for sign, side in zip((1.0, -1.0), sides, strict=True):
+        axes.plot(
+            *np.stack([side.foot, side.foot + long * side.way], axis=1), color=TANGENT, lw=1.2
+        )
         axes.annotate(
-            f"{angle:.2f}°", foot, (-8.0 * sign, -6.0), textcoords="offset points", ha=side,
-            va="top", color=TANGENT, fontsize=9,
+            f"{side.angle:.2f}°",
+            side.foot,
+            (-8.0 * sign, -6.0),
+            textcoords="offset points",
+            ha="right" if sign > 0 else "left",
+            va="top",
+            color=TANGENT,
+            fontsize=9,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-        )  # fmt: skip
+        )
     axes.set_axis_off()
     axes.set_aspect("equal")
     write_figure(made, path)
-    return angles
+    return sides[0].angle, sides[1].angle
 
 
 def _shadow(axes: Any, triangles: Array) -> None:
@@ -97,28 +105,51 @@ def _shadow(axes: Any, triangles: Array) -> None:
     axes.add_collection(PolyCollection(list(triangles), facecolors=SHADOW, antialiaseds=False))
 
 
-def _of_line(solution: Solution, right: Array) -> tuple[tuple[float, float], tuple[Array, Array]]:
-    """Angles and places where the contact line reaches farthest to the left and right."""
-    scene = solution.scene
-    line = next(each.line for each in contact_lines(solution) if not _on_particle(solution, each))
-    x = scene.units.to_local(line.position)
-    ends = [int((x @ right).argmin()), int((x @ right).argmax())]
-    one, two = (float(np.degrees(line.angle[k])) for k in ends)
-    feet = [np.array([x[k] @ right, x[k, 2]]) for k in ends]
-    return (one, two), (feet[0], feet[1])
+@dataclass(frozen=True, eq=False)
+class Side:
+    """Where the outline meets the solid: contact angle (degrees), place (2,) and direction (2,) in
+    which the liquid's surface leaves it, as the camera sees them."""
+
+    angle: float
+    foot: Array
+    way: Array
+
+
+def _of_line(solution: Solution, right: Array) -> tuple[Side, Side]:
+    """Where the contact line reaches farthest to the left and to the right."""
+    scale = solution.scene.units
+    lines = [each.line for each in contact_lines(solution) if not _on_particle(solution, each)]
+    if not lines:
+        raise SceneError("plot_side: the membrane lies on its solid; no line has an angle to show")
+    line = lines[0]
+    seen = np.stack([right, [0.0, 0.0, 1.0]], axis=1)
+    x, leaving = scale.to_local(line.position) @ seen, -(line.conormal @ scale.axes) @ seen
+    one, two = (
+        Side(float(np.degrees(line.angle[k])), x[k], leaving[k])
+        for k in (x[:, 0].argmin(), x[:, 0].argmax())
+    )
+    return one, two
 
 
 def _on_particle(solution: Solution, each: Any) -> bool:
     return bool(solution.scene.particles) and each.solid >= 0
 
 
-def _of_profile(axes: Any, solution: Solution) -> tuple[tuple[float, float], tuple[Array, Array]]:
-    """Angles and places where the axisymmetric profile meets z = 0; draws it."""
+def _of_profile(axes: Any, solution: Solution) -> tuple[Side, Side]:
+    """Where the axisymmetric profile meets z = 0; draws it."""
     scale = solution.scene.units
     r, z, turn = profile(solution.measures["height"] / scale.length, solution.body, 1.0)
     axes.plot(np.append(-r[::-1], r), np.append(z[::-1], z), "--", color=PROFILE, lw=1.2)
-    angle = float(np.degrees(min(turn[-1], np.pi)))
-    return (angle, angle), (np.array([-r[-1], z[-1]]), np.array([r[-1], z[-1]]))
+    slope = min(turn[-1], np.pi)
+    one, two = (
+        Side(
+            float(np.degrees(slope)),
+            np.array([sign * r[-1], z[-1]]),
+            np.array([-sign * np.cos(slope), np.sin(slope)]),
+        )
+        for sign in (-1.0, 1.0)
+    )
+    return one, two
 
 
 def _shade_solids(axes: Any, solution: Solution, right: Array, shadow: Array) -> None:

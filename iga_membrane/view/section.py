@@ -118,7 +118,7 @@ def _draw_solids(axes: Any, solution: Solution, section: Array) -> None:
 
     scale = solution.scene.units
     wide = 1.35 * float(np.abs(section[:, 0]).max())
-    low = float(section[:, 2].min())
+    low, high = float(section[:, 2].min()), float(section[:, 2].max())
     circles: list[tuple[Array, float]] = []
     for solid in solids(solution):
         if isinstance(solid, Plane):
@@ -134,6 +134,8 @@ def _draw_solids(axes: Any, solution: Solution, section: Array) -> None:
         cut = (radius / scale.length) ** 2 - y**2
         if cut > 0.0 and abs(x) < wide + np.sqrt(cut):
             axes.add_patch(Circle((x, z), np.sqrt(cut), color=SOLID, lw=0))
-            low = min(low, z - np.sqrt(cut))
-    high = float(section[:, 2].max())
+            low, high = min(low, z - np.sqrt(cut)), max(high, z + np.sqrt(cut))
+    # of large solids the part near the membrane
+    low = max(low, float(section[:, 2].min()) - 0.5 * wide)
+    high = min(high, float(section[:, 2].max()) + 0.5 * wide)
     axes.set(xlim=(-wide, wide), ylim=(low, high + 0.06 * wide))

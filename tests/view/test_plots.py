@@ -9,6 +9,7 @@ from helpers import droplet
 
 import iga_membrane as iga
 from iga_membrane.reference import drop_on_plane, profile_on_plane
+from iga_membrane.view.goniometer import _of_line
 
 
 def shown(path):
@@ -66,13 +67,16 @@ def test_shadow_of_a_cap_is_its_circle_and_its_angle_youngs(tmp_path):
     assert shadow[rows].sum() * pixel**2 == pytest.approx(area, rel=0.03)
 
 
-def test_a_camera_sees_the_angle_on_a_sphere(tmp_path):
-    drop = iga.solve(
-        iga.sessile_droplet(iga.Sphere(100.0, 2.0, (0.0, 0.0, -2.0)), volume=1.0, gravity=0.5)
-    )
-    assert iga.plot_side(drop, tmp_path / "ball.png", azimuth=30.0) == pytest.approx(
-        (100.0, 100.0), abs=1e-2
-    )
+def test_a_camera_sees_the_angle_between_drop_and_sphere(tmp_path):
+    ball = iga.Sphere(100.0, 2.0, (0.0, 0.0, -2.0))
+    drop = iga.solve(iga.sessile_droplet(ball, volume=1.0, gravity=0.5))
+    angles = iga.plot_side(drop, tmp_path / "ball.png", azimuth=30.0)
+    assert angles == pytest.approx((100.0, 100.0), abs=1e-4)
+    # the drawn tangent stands on the wetted side of the sphere at that angle
+    polar = np.radians(drop.measures["alpha_deg"])
+    for sign, side in zip((-1.0, 1.0), _of_line(drop, np.array([1.0, 0.0, 0.0])), strict=True):
+        wetted = np.array([-sign * np.cos(polar), np.sin(polar)])
+        assert np.degrees(np.arccos(wetted @ side.way)) == pytest.approx(100.0, abs=0.1)
 
 
 def test_on_asperities_a_camera_sees_the_apparent_angle(rough, tmp_path):
@@ -81,6 +85,17 @@ def test_on_asperities_a_camera_sees_the_apparent_angle(rough, tmp_path):
 
 
 def test_a_shadow_is_of_droplets_only(sheet, tmp_path):
+    lying = iga.solve(
+        iga.sessile_droplet(
+            iga.Sphere(180.0, 2.0, (0.0, 0.0, -2.0)),
+            volume=1.0,
+            gravity=0.5,
+            discretization=iga.Discretization(elements=8),
+        ),
+        on_fail="return",
+    )
+    with pytest.raises(iga.SceneError, match="no line has an angle"):
+        iga.plot_side(lying, tmp_path / "lying.png")
     with pytest.raises(iga.SceneError, match="droplets"):
         iga.plot_side(sheet, tmp_path / "sheet.png")
     with pytest.raises(iga.OutputError, match="ending must be"):
