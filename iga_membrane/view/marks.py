@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..solids import Plane, Sphere
+from ..solids import Sphere
 from ..solver.lines import LineOnSolid, contact_lines
 from .fields import solids
+from .mesh import trimming_solid
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -73,14 +74,8 @@ def _sphere_of(solution: Solution, each: LineOnSolid) -> tuple[Array, float]:
     """Centre and radius of the solid of a line; a plane has an infinite radius."""
     if each.solid < 0:
         return np.zeros(3), np.inf
-    scene = solution.scene
-    count = len(scene.particles)
-    on = scene.substrate
-    if count and isinstance(on, Plane):
-        particle = scene.particles[each.solid]
-        return np.array(particle.center), particle.radius
+    on, which = trimming_solid(solution) or solution.scene.substrate, np.array(each.solid)
     assert on is not None
-    which = np.array(each.solid)
     return np.asarray(on.center_of(which)), float(on.radius_of(which))
 
 
