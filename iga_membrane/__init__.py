@@ -48,6 +48,11 @@ _HOME = {
     "analysis.self_cleaning": ("SelfCleaning", "Verdict", "self_cleaning"),
     "analysis.sweep": ("Sweep", "sweep"),
     "view.picture": ("plot",),
+    "view.section": ("plot_section",),
+    "view.goniometer": ("plot_side",),
+    "view.animation": ("animate",),
+    "view.diagrams": ("plot_curves", "plot_phases"),
+    "solver.lines": ("contact_lines",),
     "view.export": ("save",),
 }  # fmt: skip
 _MODULE = {name: module for module, names in _HOME.items() for name in names}

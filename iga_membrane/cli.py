@@ -16,10 +16,12 @@ from . import __version__
 from .errors import GeometryError, OutputError, SceneError, StateError
 from .files import check_folder, previous
 from .progress import bar
+from .progress import log as progress_log
 from .scenes.scene_file import load_scene, read_tables
 from .solver.options import SolverOptions
+from .solver.solution import Solution
 from .solver.solve import solve
-from .view.export import save
+from .view.export import ending_of, save
 
 SOLVED, BAD_SCENE, FAILED, NOT_WRITABLE, INTERRUPTED = 0, 2, 3, 4, 130
 
@@ -29,6 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = _parser()
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
+    progress_log.setLevel(logging.INFO if given.progress else logging.WARNING)
     try:
         code: int = given.run(given)
         return code
@@ -52,7 +55,7 @@ def _solve(given: argparse.Namespace) -> int:
     folder = Path(given.out)
     check_folder(folder)
     if given.png:
-        from .view.picture import check_drawing
+        from .view.drawing import check_drawing
 
         check_drawing()
     state = folder / "state.npz"
@@ -99,29 +102,62 @@ def _info(given: argparse.Namespace) -> int:
     """Print a summary of a result: a folder, a state or a result file."""
     path = _result_of(Path(given.result))
     if path.suffix == ".npz":
-        from .solver.state import load
-
-        _say(load(path).summary())
+        _say(_load(path).summary())
         return SOLVED
     record = _json(path)
     lines = [f"{record['status']}: {record.get('message')}"]
-    lines += [f"  {name:<24}{value!r:>24}" for name, value in record.get("measures", {}).items()]
+    for part in ("measures", "dimensionless"):
+        lines += [f"  {name:<24}{value!r:>24}" for name, value in record.get(part, {}).items()]
     _say("\n".join(lines))
     return SOLVED
 
 
 def _plot(given: argparse.Namespace) -> int:
-    from .solver.state import load
-    from .view.picture import check_drawing
-
-    state = Path(given.result)
-    state = state / "state.npz" if state.is_dir() else state
+    state = _state_of(Path(given.result))
     out = Path(given.out) if given.out else state.with_name("picture.png")
-    solution = load(state)
-    check_drawing()
-    solution.plot(out, **({"color": given.color} if given.color else {}))
+    words = {
+        name: getattr(given, name) for name in ("color", "view", "focus", "traction", "forces")
+    }
+    asked = {name: value for name, value in words.items() if value}
+    if asked and given.kind != "space":
+        raise SceneError(f"--{next(iter(asked))}: has no meaning with --kind {given.kind}")
+    check_folder(out.parent)
+    solution = _load(state)
+    if given.kind == "section":
+        from .view.section import plot_section
+
+        plot_section(solution, out)
+    elif given.kind == "goniometer":
+        from .view.goniometer import plot_side
+
+        plot_side(solution, out)
+    else:
+        solution.plot(out, **asked)
     _say(str(out))
     return SOLVED
+
+
+def _export(given: argparse.Namespace) -> int:
+    """Write other files of a result, by their endings; all endings are checked first."""
+    files = [Path(name) for name in given.files]
+    for file in files:
+        ending_of(file)
+        check_folder(file.parent)
+    solution = _load(_state_of(Path(given.result)))
+    for file in files:
+        save(solution, file)
+        _say(str(file))
+    return SOLVED
+
+
+def _state_of(path: Path) -> Path:
+    return path / "state.npz" if path.is_dir() else path
+
+
+def _load(path: Path) -> Solution:
+    from .solver.state import load
+
+    return load(path)
 
 
 def _result_of(path: Path) -> Path:
@@ -164,6 +200,8 @@ def _parser() -> argparse.ArgumentParser:
         prog="iga_membrane", description="Static wetting with C1 spline membranes."
     )
     parser.add_argument("--version", action="version", version=__version__)
+    parser.add_argument("--progress", action="store_true",
+                        help="lines of progress on stderr where it is no terminal")  # fmt: skip
     commands = parser.add_subparsers(dest="command", required=True)
     command = _command(commands, "solve", _solve, "solve one scene file")
     command.add_argument("scene", help="scene file, .toml or .json")
@@ -181,6 +219,21 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("result", help="output folder, state.npz or result.json")
     command = _command(commands, "plot", _plot, "draw a result")
     command.add_argument("result", help="output folder or state.npz")
-    command.add_argument("--out", help="picture (.png); by default picture.png beside the state")
-    command.add_argument("--color", choices=("mean_curvature", "pressure", "none"))
+    command.add_argument(
+        "--out",
+        help="picture (.png; section and goniometer also .pdf, .svg); by default picture.png",
+    )
+    command.add_argument("--kind", choices=("space", "goniometer", "section"), default="space",
+                         help="in space; the shadow from the side; the section")  # fmt: skip
+    command.add_argument("--color", choices=("none", "mean_curvature", "pressure", "gap",
+                                             "residual"))  # fmt: skip
+    command.add_argument("--view", choices=("oblique", "foot", "side", "top"))
+    command.add_argument("--focus", choices=("asperity",), help="zoom on a wet asperity")
+    command.add_argument("--traction", action="store_true", help="arrows along contact lines")
+    command.add_argument("--forces", action="store_true", help="arrows of forces on particles")
+    command = _command(commands, "export", _export, "write other files of a result")
+    command.add_argument("result", help="output folder or state.npz")
+    command.add_argument("files", nargs="+", metavar="FILE",
+                         help="by its ending .vtu, .stl, .obj, .ply, .geomdl.json, .lines.csv, "
+                         ".forces.csv, .json, .npz or .png")  # fmt: skip
     return parser

@@ -86,7 +86,40 @@ def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
 def test_an_unknown_ending_is_refused(tmp_path):
     solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
     with pytest.raises(iga.OutputError, match="ending must be"):
-        solution.save(tmp_path / "drop.stl")
+        solution.save(tmp_path / "drop.step")
+
+
+def test_export_writes_other_files_of_a_result_by_their_endings(scene, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["solve", str(scene), "--out", str(out)]) == 0
+    files = [str(tmp_path / f"drop{ending}") for ending in (".stl", ".lines.csv", ".geomdl.json")]
+    assert main(["export", str(out), *files]) == 0
+    assert all(name in capsys.readouterr().out for name in files[-1:])
+    assert all((tmp_path / name).stat().st_size > 100 for name in files)
+    assert main(["export", str(out), str(tmp_path / "one.vtu"), str(tmp_path / "drop.step")]) == 4
+    assert "ending must be one of" in capsys.readouterr().err
+    assert not (tmp_path / "one.vtu").exists(), "endings are checked before anything is written"
+
+
+def test_plot_draws_every_kind_of_picture(scene, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["solve", str(scene), "--out", str(out)]) == 0
+    for kind in ("goniometer", "section"):
+        picture = tmp_path / f"{kind}.pdf"
+        assert main(["plot", str(out), "--kind", kind, "--out", str(picture)]) == 0
+        assert picture.read_bytes().startswith(b"%PDF")
+    assert main(["plot", str(out), "--kind", "section", "--color", "gap"]) == 2
+    assert "--color: has no meaning with --kind section" in capsys.readouterr().err
+
+
+def test_info_tells_numbers_without_units_of_a_result_file_too(scene, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["solve", str(scene), "--out", str(out)]) == 0
+    for result in (out, out / "result.json"):
+        assert main(["info", str(result)]) == 0
+        text = capsys.readouterr().out
+        assert "height" in text
+        assert "bond" in text
 
 
 def test_the_module_runs_as_a_process_in_any_locale(scene, tmp_path):

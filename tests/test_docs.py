@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from iga_membrane.view import picture
+from iga_membrane.view import drawing
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -18,7 +18,7 @@ def blocks(page):
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.name)
 def test_code_blocks_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    if not picture.can_draw():
+    if not drawing.can_draw():
         monkeypatch.setattr("iga_membrane.view.picture.plot", lambda *a, **k: None)
     names = {}
     for number, block in enumerate(blocks(page)):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 import logging
 import time
@@ -28,8 +26,9 @@ from ..progress import bar
 from ..records import digest
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
-from ..solver.result_file import result
+from ..solver.result_file import flat, result
 from ..solver.solve import solve
+from ..tables import column, csv_text, dataframe, dataset, names_of
 from .lanes import ProcessLanes, WorkerStartError
 from .record_store import Record, RecordStore
 
@@ -74,7 +73,7 @@ class Sweep:
 
     def column(self, name: str) -> Array:
         """(points,) a parameter or a measure; not a number where a point has none."""
-        return np.array([_number(_row(record).get(name)) for record in self.records])
+        return column(self._rows(), name)
 
     def save(self, path: str | Path) -> None:
         """Write a table of parameters, status and measures, .csv or .npz.
@@ -84,25 +83,43 @@ class Sweep:
         OutputError
         """
         path = Path(path)
-        rows = [_row(record) for record in self.records]
-        names = list(dict.fromkeys(name for row in rows for name in row))
+        rows = self._rows()
         if path.suffix == ".csv":
-            text = io.StringIO()
-            table = csv.DictWriter(text, names, lineterminator="\n")
-            table.writeheader()
-            table.writerows(rows)
-            write_whole(path, lambda name: Path(name).write_text(text.getvalue(), "utf-8"))
+            write_whole(path, lambda name: Path(name).write_text(csv_text(rows), "utf-8"))
         elif path.suffix == ".npz":
             texts = ("status", "error")
             columns: dict[str, Any] = {
                 name: np.array([str(row.get(name, "")) for row in rows])
                 if name in texts
-                else self.column(name)
-                for name in names
+                else column(rows, name)
+                for name in names_of(rows)
             }
             write_whole(path, lambda name: np.savez(name, **columns))
         else:
             raise OutputError(f"{path}: ending must be .csv or .npz")
+
+    def to_dataframe(self) -> Any:
+        """``pandas.DataFrame`` with the rows of the table.
+
+        Raises
+        ------
+        OutputError
+            If pandas is not installed.
+        """
+        return dataframe(self._rows())
+
+    def to_xarray(self) -> Any:
+        """``xarray.Dataset`` of the table on the grid of the parameters.
+
+        Raises
+        ------
+        OutputError
+            If xarray is not installed.
+        """
+        return dataset(self._rows(), self.parameters)
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return [_row(record) for record in self.records]
 
 
 def sweep(
@@ -370,11 +387,5 @@ def _status(record: Record) -> str:
 
 
 def _row(record: Record) -> dict[str, Any]:
-    found = record.get("result", {})
     row = {**record["parameters"], "status": _status(record), "error": record.get("error", "")}
-    return row | found.get("measures", {})
-
-
-def _number(value: Any) -> float:
-    plain = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return float(value) if plain else np.nan
+    return row | flat(record["result"]) if "result" in record else row

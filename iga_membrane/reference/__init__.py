@@ -6,6 +6,6 @@ Units: surface tension 1, angles in degrees through the liquid, pressures liquid
 
 from .caps import cap_on_plane
 from .catenoid import catenoid
-from .young_laplace import drop_on_plane
+from .young_laplace import drop_on_plane, profile_on_plane
 
-__all__ = ["cap_on_plane", "catenoid", "drop_on_plane"]
+__all__ = ["cap_on_plane", "catenoid", "drop_on_plane", "profile_on_plane"]

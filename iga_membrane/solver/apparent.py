@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..terms import BodyDensity
 
 
@@ -24,6 +25,12 @@ def apparent_angle(height: float, body: BodyDensity, tension: float) -> float:
     What a goniometer sees: the profile knows the pressure and the height of the droplet, not its
     asperities.
     """
+    return float(np.degrees(min(profile(height, body, tension)[2, -1], np.pi)))
+
+
+def profile(height: float, body: BodyDensity, tension: float) -> Array:
+    """(3, points) distance from the axis, height and slope angle (radians) of that profile, from
+    the apex down to z = 0 or to where it closes."""
     from scipy.integrate import solve_ivp  # a third of a small solve's process: only where needed
 
     def slope(s: float, state: tuple[float, float, float]) -> list[float]:
@@ -42,11 +49,10 @@ def apparent_angle(height: float, body: BodyDensity, tension: float) -> float:
         event.terminal = True  # type: ignore[attr-defined]
     start = 1e-6 * height
     turn = -0.5 * start * (body.constant + body.gradient[2] * height) / tension
-    path = solve_ivp(
+    return solve_ivp(
         slope, (start, 20.0 * height + 20.0), [start, height, turn],
         events=(ground, closed), rtol=1e-9, atol=1e-12,
-    )  # fmt: skip
-    return float(np.degrees(min(path.y[2, -1], np.pi)))
+    ).y  # fmt: skip
 
 
 def cassie_baxter_angle(wet: float, projected: float, base: float, contact_angle: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,7 @@ def result(solution: Solution) -> dict[str, Any]:
         "newton_iterations": solution.newton_iterations,
         "cpu_seconds": dict(solution.cpu_seconds),
         "measures": dict(solution.measures),
+        "dimensionless": dict(solution.dimensionless),
         "multipliers": dict(solution.multipliers),
         "contact": {
             "asperities": [],
@@ -57,6 +59,18 @@ def result(solution: Solution) -> dict[str, Any]:
 def result_text(solution: Solution) -> str:
     """JSON text of the result."""
     return json.dumps(result(solution), indent=1, allow_nan=False) + "\n"
+
+
+def flat(found: Mapping[str, Any]) -> dict[str, Any]:
+    """A result as one row of a table: status, measures, numbers without dimensions, and of each
+    particle's forces ``F_e_x``, ``F_e_y``, ``F_e_z`` and ``lifts``, numbered if there are several.
+    """
+    row = {"status": found["status"]} | found["measures"] | found.get("dimensionless", {})
+    for k, force in enumerate(found["forces"]):
+        mark = f"_{k}" if len(found["forces"]) > 1 else ""
+        row |= {f"F_e_{axis}{mark}": v for axis, v in zip("xyz", force["F_e"], strict=True)}
+        row[f"lifts{mark}"] = force["lifts"]
+    return row
 
 
 def _step(step: LoadStep | None) -> dict[str, Any] | None:

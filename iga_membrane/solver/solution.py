@@ -13,7 +13,8 @@ from ..arrays import Array
 from ..scenes.scene import Scene
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
-from ..terms import BodyDensity, SurfaceTension
+from ..tables import dataframe
+from ..terms import BodyDensity, Gravity, SurfaceTension
 from .audit import Audit
 from .forces import ParticleForces
 from .load_stepping import Bracket, LoadStep, Progress
@@ -85,6 +86,30 @@ class Solution:
         """All Newton iterations, of every load."""
         return sum(step.iterations for step in self.load_steps)
 
+    @property
+    def dimensionless(self) -> dict[str, float]:
+        """Numbers that do not depend on the units.
+
+        ``bond_number`` is ``rho g L^2 / gamma`` with the length of the scene's scale (droplets:
+        the radius of a ball of the volume; sheets: the particle's radius). Of a droplet also
+        ``apparent_angle`` in degrees, on smooth solids the measured contact angle, and
+        ``wetted_fraction``, the wetted area over that of a disc of the contact radius.
+        """
+        scene = self.scene
+        weights = [
+            term.density_of_liquid * float(np.linalg.norm(term.acceleration))
+            for term in scene.terms
+            if isinstance(term, Gravity)
+        ] or [scene.liquid_density * float(np.linalg.norm(scene.acceleration))]
+        found = {"bond_number": weights[0] * scene.units.length**2 / self._tension}
+        if scene.kind == "sessile_droplet":
+            for name in ("contact_angle_measured", "apparent_angle"):
+                if name in self.measures:
+                    found["apparent_angle"] = self.measures[name]
+            if self.contact.get("wet_fraction") is not None:
+                found["wetted_fraction"] = float(self.contact["wet_fraction"])
+        return found
+
     def pressure(self, points: Array) -> Array:
         """Pressure, liquid minus gas, at world points (..., 3): paper eq. (21)."""
         scale = self.scene.units
@@ -134,6 +159,10 @@ class Solution:
         """Status, measures, effort, in a few lines."""
         lines = [f"{self.status.name}: {self.message}"]
         lines += [f"  {name:<24}{value: .10g}" for name, value in self.measures.items()]
+        numbers = ", ".join(
+            f"{name.replace('_', ' ')} {value:.6g}" for name, value in self.dimensionless.items()
+        )
+        lines.append(f"  {'without units':<24} {numbers}")
         if self.lambda_min is not None:
             lines.append(
                 f"  {'stability':<24} index {self.index}, smallest eigenvalue "
@@ -157,7 +186,35 @@ class Solution:
         return plot(self, path, **options)
 
     def save(self, path: str | Path) -> None:
-        """Write the surface (.vtu), a picture (.png), the result (.json) or the state (.npz)."""
+        """Write a file by its ending (:func:`iga_membrane.view.export.save`)."""
         from ..view.export import save
 
-        save(self, Path(path))
+        save(self, path)
+
+    def row(self) -> dict[str, Any]:
+        """The result as one row of a table (:func:`.result_file.flat`)."""
+        from .result_file import flat, result
+
+        return flat(result(self))
+
+    def to_dataframe(self) -> Any:
+        """``pandas.DataFrame`` of one row: status, measures, numbers without units, forces.
+
+        Raises
+        ------
+        OutputError
+            If pandas is not installed.
+        """
+        return dataframe([self.row()])
+
+    def to_xarray(self, resolution: int = 65) -> Any:
+        """``xarray.Dataset`` of position, normal and fields on a regular grid of the parameters.
+
+        Raises
+        ------
+        OutputError
+            If xarray is not installed.
+        """
+        from ..view.tables import field_dataset
+
+        return field_dataset(self, resolution)

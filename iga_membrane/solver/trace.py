@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import process_time
-from typing import Literal
+from typing import Any, Literal
 
+from ..arrays import Array
 from ..checks import choice, path_values
 from ..errors import SolveError, StateError
 from ..scenes.scene import Ramp, Scene
+from ..tables import column, dataframe, dataset
 from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
@@ -47,6 +49,34 @@ class Path:
     def bracket(self) -> Bracket | None:
         """Of the limit point at which the path ended, if it did."""
         return self.end.bracket
+
+    def column(self, name: str) -> Array:
+        """(values,) the parameter, a measure or a force; not a number where there is none."""
+        return column(self._rows(), name)
+
+    def to_dataframe(self) -> Any:
+        """``pandas.DataFrame`` with a row for each value that was reached.
+
+        Raises
+        ------
+        OutputError
+            If pandas is not installed.
+        """
+        return dataframe(self._rows())
+
+    def to_xarray(self) -> Any:
+        """``xarray.Dataset`` along the parameter.
+
+        Raises
+        ------
+        OutputError
+            If xarray is not installed.
+        """
+        return dataset(self._rows(), [self.parameter])
+
+    def _rows(self) -> list[dict[str, Any]]:
+        pairs = zip(self.values, self.solutions, strict=True)
+        return [{self.parameter: value, **solution.row()} for value, solution in pairs]
 
 
 def trace(

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import SceneError
-from ..splines import bspline_basis, tensor_space
+from ..splines import Basis, bspline_basis, tensor_space
+from .bezier import bezier_net
 from .surface import Surface
 
 
@@ -41,28 +43,59 @@ def from_geomdl(surface: Any) -> Surface:
 
 
 def to_geomdl(surface: Surface) -> Any:
-    """``geomdl.NURBS.Surface`` (or ``BSpline.Surface`` without weights) of an open surface.
+    """``geomdl.NURBS.Surface`` (or ``BSpline.Surface`` without weights) of any surface.
 
-    Raises
-    ------
-    SceneError
-        For Lagrange, periodic or polar spaces, which geomdl does not have.
+    Notes
+    -----
+    Open B-spline and NURBS surfaces keep their knots. Lagrange, periodic and polar ones, which
+    geomdl does not have, become the same surface by its Bezier points: knots as often as the
+    degree, rings closed by equal points. geomdl scales the
+    parameters to [0, 1].
     """
     from geomdl import NURBS, BSpline
 
     space = surface.space
-    if space.pole is not None or any(basis.knots is None for basis in space.bases):
-        raise SceneError("to_geomdl: only open B-spline and NURBS surfaces can be exchanged")
-    made = BSpline.Surface() if space.weights is None else NURBS.Surface()
+    weights, net = space.weights, surface.net
+    knots = [basis.knots for basis in space.bases if basis.knots is not None]
+    if space.pole is not None or space.shared is not None or len(knots) < 2:
+        net, w = _bezier_points(surface)
+        knots = [_bezier_knots(basis) for basis in space.bases]
+        weights = None if space.weights is None else w
+    made = BSpline.Surface() if weights is None else NURBS.Surface()
     made.degree_u, made.degree_v = (basis.degree for basis in space.bases)
-    made.ctrlpts_size_u, made.ctrlpts_size_v = space.net_shape
-    points = surface.points
-    if space.weights is None:
-        made.ctrlpts = points.tolist()
+    made.ctrlpts_size_u, made.ctrlpts_size_v = net.shape[:2]
+    if weights is None:
+        made.ctrlpts = net.reshape(-1, 3).tolist()
     else:
-        w = space.weights.reshape(-1, 1)
-        made.ctrlptsw = np.hstack([points * w, w]).tolist()
-    made.knotvector_u, made.knotvector_v = (
-        [float(k) for k in basis.knots] for basis in space.bases if basis.knots is not None
-    )
+        each = weights[..., None]
+        made.ctrlptsw = np.concatenate([net * each, each], axis=-1).reshape(-1, 4).tolist()
+    made.knotvector_u, made.knotvector_v = ([float(k) for k in line] for line in knots)
     return made
+
+
+def write_geomdl(surface: Surface, path: str) -> None:
+    """Write a surface as JSON that ``geomdl.exchange.import_json`` reads."""
+    from geomdl import exchange
+
+    exchange.export_json(to_geomdl(surface), path)
+
+
+def _bezier_points(surface: Surface) -> tuple[Array, Array]:
+    """Control net (n1, n2, 3) and weights (n1, n2) with all elements' Bezier points, once each."""
+    one, two = surface.space.bases
+    cells = bezier_net(surface)
+    p1, p2 = one.degree, two.degree
+    cells = cells.reshape(one.elements, two.elements, p1 + 1, p2 + 1, 4)
+    net = np.empty((one.elements * p1 + 1, two.elements * p2 + 1, 4))
+    for i in range(p1 + 1):
+        for j in range(p2 + 1):
+            net[i::p1, j::p2][: one.elements, : two.elements] = cells[:, :, i, j]
+    return net[..., :3] / net[..., 3:], net[..., 3]
+
+
+def _bezier_knots(basis: Basis) -> Array:
+    """Open knots, those inside as often as the degree."""
+    ends = basis.breaks[[0, -1]]
+    inside = np.repeat(basis.breaks[1:-1], basis.degree)
+    first, last = (np.full(basis.degree + 1, end) for end in ends)
+    return np.concatenate([first, inside, last])

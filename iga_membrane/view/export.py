@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import OutputError
 from ..files import write_whole
-from ..solver.solution import Solution
-from ..solver.state import write_state
+
+if TYPE_CHECKING:
+    from ..solver.solution import Solution
 
 
 def save(solution: Solution, path: str | Path) -> None:
@@ -15,8 +18,10 @@ def save(solution: Solution, path: str | Path) -> None:
 
     Parameters
     ----------
-    path : ending in .json (result), .npz (state), .vtu (exact rational Bezier surface) or .png
-        (picture).
+    path : its ending says what is written: .json the result, .npz the state, .vtu the exact
+        rational Bezier surface with its fields, .stl, .obj or .ply the shape in triangles,
+        .geomdl.json the spline surface for geomdl, .lines.csv the points of the contact lines,
+        .forces.csv the forces on particles, asperities and substrate, .png a picture.
 
     Raises
     ------
@@ -24,21 +29,91 @@ def save(solution: Solution, path: str | Path) -> None:
         Another ending, or a place that cannot be written. Nothing half-written is left behind.
     """
     path = Path(path)
-    match path.suffix:
-        case ".json":
-            from ..solver.result_file import result_text
+    write_whole(path, WRITERS[ending_of(path)](solution))
 
-            text = result_text(solution)
-            write_whole(path, lambda file: Path(file).write_text(text, encoding="utf-8"))
-        case ".npz":
-            write_state(path, solution)
-        case ".vtu":
-            from .vtu import write_vtu
 
-            write_whole(path, lambda file: write_vtu(solution, file))
-        case ".png":
-            from .picture import plot
+def ending_of(path: Path) -> str:
+    """The ending that says what to write.
 
-            write_whole(path, lambda file: plot(solution, file))
-        case _:
-            raise OutputError(f"{path}: ending must be .json, .npz, .vtu or .png")
+    Raises
+    ------
+    OutputError
+        None that is known.
+    """
+    known = [ending for ending in WRITERS if path.name.endswith(ending)]
+    if not known:
+        raise OutputError(f"{path}: ending must be one of {', '.join(WRITERS)}")
+    return max(known, key=len)
+
+
+Writer = Callable[[str], object]
+"""Writes the file of a name."""
+
+
+def _result(solution: Solution) -> Writer:
+    from ..solver.result_file import result_text
+
+    return _text(result_text(solution))
+
+
+def _state(solution: Solution) -> Writer:
+    from ..solver.state import write_state
+
+    return lambda file: write_state(Path(file), solution)
+
+
+def _vtu(solution: Solution) -> Writer:
+    from .vtu import write_vtu
+
+    return lambda file: write_vtu(solution, file)
+
+
+def _shape(solution: Solution) -> Writer:
+    from .shape import write_shape
+
+    return lambda file: write_shape(solution, file)
+
+
+def _geomdl(solution: Solution) -> Writer:
+    from ..surface.exchange import write_geomdl
+
+    return lambda file: write_geomdl(solution.surface, file)
+
+
+def _lines(solution: Solution) -> Writer:
+    from ..tables import csv_text
+    from .tables import line_rows
+
+    return _text(csv_text(line_rows(solution)))
+
+
+def _forces(solution: Solution) -> Writer:
+    from ..tables import csv_text
+    from .tables import force_rows
+
+    return _text(csv_text(force_rows(solution)))
+
+
+def _picture(solution: Solution) -> Writer:
+    from .picture import plot
+
+    return lambda file: plot(solution, file)
+
+
+def _text(text: str) -> Writer:
+    return lambda file: Path(file).write_text(text, encoding="utf-8")
+
+
+WRITERS: dict[str, Callable[[Solution], Writer]] = {
+    ".json": _result,
+    ".npz": _state,
+    ".vtu": _vtu,
+    ".stl": _shape,
+    ".obj": _shape,
+    ".ply": _shape,
+    ".geomdl.json": _geomdl,
+    ".lines.csv": _lines,
+    ".forces.csv": _forces,
+    ".png": _picture,
+}
+"""Ending to what writes it."""

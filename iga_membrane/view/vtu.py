@@ -1,4 +1,4 @@
-"""Exact surface for VTK: one rational Bezier cell per element, weights included."""
+"""Exact surface for VTK: one rational Bezier cell per element, weights and fields included."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Index
+from ..arrays import Array, Index
+from ..splines.bernstein import bernstein
 from ..surface.bezier import bezier_net
 from ..surface.surface import Surface
+from .fields import FIELDS, field
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -54,5 +56,42 @@ def grid(surface: Surface) -> Any:
 
 
 def write_vtu(solution: Solution, path: str) -> None:
-    """Write a solution's surface as a VTU file."""
-    grid(solution.surface).save(path)
+    """Write a solution's surface with its fields (:data:`.fields.FIELDS`) as a VTU file.
+
+    Notes
+    -----
+    VTK interpolates point data like positions, so fields are kept by their Bezier coefficients and
+    are right at ``degree + 1`` points in each direction of every cell. A gap is left out where
+    there is no solid.
+    """
+    made = grid(solution.surface)
+    xi, to_coefficients = _sampling(solution.surface)
+    at = solution.surface.at(xi)
+    for name in FIELDS:
+        values = field(solution, name, at)
+        if np.isfinite(values).all():
+            made.point_data[name] = to_coefficients(values)
+    made.save(path)
+
+
+def _sampling(surface: Surface) -> tuple[Array, Any]:
+    """Points inside the cells (cells, points, 2), and what makes values there (cells, points) the
+    coefficients of rational Bezier functions, cell after cell in VTK's order."""
+    one, two = surface.space.bases
+    weights = bezier_net(surface)[..., 3]
+    count, n1, n2 = weights.shape
+    # Chebyshev's points keep away from poles, where the parametrization has no normal
+    u, v = (0.5 - 0.5 * np.cos((np.arange(n) + 0.5) * np.pi / n) for n in (n1, n2))
+    rows, columns = bernstein(u, n1 - 1), bernstein(v, n2 - 1)
+    s = (one.breaks[:-1, None] + one.sizes[:, None] * u)[:, None, :, None]
+    t = (two.breaks[:-1, None] + two.sizes[:, None] * v)[None, :, None, :]
+    xi = np.stack(np.broadcast_arrays(s, t), axis=-1).reshape(count, n1 * n2, 2)
+    inverse = np.linalg.inv(rows), np.linalg.inv(columns).T
+    order = bezier_order(n1 - 1, n2 - 1)
+
+    def to_coefficients(values: Array) -> Array:
+        weighted = values.reshape(count, n1, n2) * (rows @ weights @ columns.T)
+        found = inverse[0] @ weighted @ inverse[1] / weights
+        return np.asarray(found.reshape(count, n1 * n2)[:, order].ravel())
+
+    return xi, to_coefficients

@@ -56,6 +56,18 @@ def test_a_grid_is_the_product_of_its_values(tmp_path):
         found.save(tmp_path / "table.xlsx")
 
 
+def test_a_sweep_is_a_frame_and_a_dataset_on_its_grid():
+    pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
+    found = inside({"angle": [60.0, 120.0], "bond": [0.1, 1.0, 2.0]})
+    frame, data = found.to_dataframe(), found.to_xarray()
+    assert frame["height"].tolist() == found.column("height").tolist()
+    assert frame["bond_number"].tolist() == pytest.approx([0.1, 1.0, 2.0] * 2)
+    assert dict(data.sizes) == {"angle": 2, "bond": 3}
+    assert float(data.height.sel(angle=120.0, bond=1.0)) == found.column("height")[4]
+    assert data.status.values.tolist() == [["CONVERGED_STABLE"] * 3] * 2
+
+
 def test_a_second_call_computes_only_what_is_missing(tmp_path):
     first = inside({"angle": ANGLES}, out=tmp_path)
     again = inside({"angle": ANGLES}, out=tmp_path)

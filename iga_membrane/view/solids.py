@@ -1,0 +1,75 @@
+"""Substrate and particles in a picture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..solids import Sphere, SphereLattice, Spheres
+
+if TYPE_CHECKING:
+    from ..solver.solution import Solution
+
+DRY, WET = "#d9d2c5", "#cc4125"
+"""Colours of solids, and of asperities that carry a part of the droplet."""
+
+
+def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> None:
+    """Draw substrate and particles.
+
+    Parameters
+    ----------
+    opacity : of the particles.
+    """
+    substrate, scale = solution.scene.substrate, solution.scene.units
+    look: dict[str, Any] = {"color": DRY, "ambient": 0.3, "smooth_shading": True}
+    for each in solution.scene.particles:
+        if each != substrate:
+            plotter.add_mesh(_ball(pv, each.center, each.radius), opacity=opacity, **look)
+    if isinstance(substrate, (SphereLattice, Spheres)):
+        _add_asperities(plotter, pv, solution)
+        return
+    if isinstance(substrate, Sphere):
+        # a membrane that covers the sphere and has sunk into it is shown on top
+        sunk = solution.contact.get("max_penetration") if solution.scene.line_inside else None
+        solid = _ball(pv, substrate.center, substrate.radius - 1.5 * (sunk or 0.0))
+    elif substrate is not None:
+        local = scale.to_local(solution.surface.points)
+        reach = 1.35 * float(np.linalg.norm(local[:, :2], axis=1).max())
+        thick = 0.05 * reach
+        center = (0.0, 0.0, -0.5 * thick - 1e-3)
+        solid = pv.Cylinder(
+            center=center, direction=(0, 0, 1), radius=reach, height=thick, resolution=180
+        )
+        solid.points = scale.to_world(np.asarray(solid.points, float))
+        look["smooth_shading"] = False
+    else:
+        return
+    opacity = opacity if solution.scene.kind == "liquid_sheet" else 1.0
+    plotter.add_mesh(solid, opacity=opacity, **look)
+
+
+def _ball(pv: Any, center: tuple[float, float, float], radius: float) -> Any:
+    return pv.Sphere(radius=radius, center=center, theta_resolution=120, phi_resolution=120)
+
+
+def _add_asperities(plotter: Any, pv: Any, solution: Solution) -> None:
+    """Spheres under the droplet and a little beside it, and their base."""
+    substrate = solution.scene.substrate
+    assert isinstance(substrate, (SphereLattice, Spheres))
+    reach = 1.3 * float(np.linalg.norm(solution.surface.points[:, :2], axis=1).max())
+    near = substrate.within(reach)
+    wet = {asperity["index"] for asperity in solution.contact.get("asperities", ())}
+    dry = np.array([which not in wet for which in near.tolist()], bool)
+    for which, color in ((near[dry], DRY), (near[~dry], WET)):
+        if not len(which):
+            continue
+        cloud = pv.PolyData(substrate.center_of(which))
+        cloud["diameter"] = 2.0 * substrate.radius_of(which)
+        ball = pv.Sphere(radius=0.5, theta_resolution=80, phi_resolution=80)
+        balls = cloud.glyph(geom=ball, scale="diameter", orient=False)
+        plotter.add_mesh(balls, color=color, ambient=0.3, smooth_shading=True)
+    if substrate.base is not None:
+        base = pv.Disc(center=(0.0, 0.0, substrate.base), inner=0.0, outer=reach, c_res=120)
+        plotter.add_mesh(base, color=DRY, ambient=0.3)

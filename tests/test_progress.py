@@ -1,0 +1,56 @@
+"""A bar on a terminal, lines in a log, nothing in a pipe unless asked."""
+
+import logging
+import os
+import subprocess
+import sys
+
+import pytest
+from helpers import droplet_file
+
+from iga_membrane.progress import bar
+
+
+def test_progress_is_a_line_for_every_tenth_in_a_log(caplog):
+    with caplog.at_level(logging.INFO, "iga_membrane.progress"), bar("sweep", 40) as report:
+        for done in range(41):
+            report(done)
+    assert caplog.messages == [f"sweep: {tenth} %" for tenth in range(10, 101, 10)]
+
+
+@pytest.fixture
+def command(tmp_path):
+    scene = tmp_path / "scene.toml"
+    more = '[[path]]\nparameter = "substrate.contact_angle"\nvalues = [120, 110]\n'
+    scene.write_text(droplet_file(120.0, 1.0, more, degree=3, elements=6))
+    return [sys.executable, "-m", "iga_membrane"], ["solve", str(scene), "--out", str(tmp_path)]
+
+
+def test_a_pipe_gets_nothing_but_the_result_unless_asked(command):
+    program, solve = command
+    quiet, asked = (
+        subprocess.run([*program, *flags, *solve], capture_output=True, text=True, check=True)
+        for flags in ([], ["--progress"])
+    )
+    assert quiet.stderr == ""
+    assert "solving: 100 %" in asked.stderr.splitlines()
+    assert quiet.stdout.startswith("CONVERGED_STABLE")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pseudo terminals")
+def test_a_terminal_gets_a_bar(command):
+    pytest.importorskip("rich")
+    program, solve = command
+    there, here = os.openpty()
+    run = subprocess.Popen([*program, *solve], stdout=subprocess.DEVNULL, stderr=here)
+    os.close(here)
+    text = b""
+    try:
+        while part := os.read(there, 4096):
+            text += part
+    except OSError:  # the terminal ends with its last user
+        pass
+    os.close(there)
+    assert run.wait() == 0
+    assert b"solving" in text
+    assert b"100%" in text
