@@ -18,9 +18,9 @@ from .audit import Audit, audit
 from .contact_record import contact_record
 from .forces import ParticleForces, particle_forces
 from .judge import contact_objection, judge, overload, reaches_boundary, too_soft
-from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, volume
+from .multifrontal import SingularMatrix
 from .newton import NewtonResult
 from .options import SolverOptions
 from .particles import forces_on_particles

@@ -1,4 +1,4 @@
-"""Symmetric matrices by size: dense LAPACK when small, sparse with fixed pattern when large.
+"""Symmetric matrices by size: dense LAPACK when small, sparse fronts when large.
 
 Both solve ``K s - B m = -g, B^T s = -c`` (a Newton step with multipliers) and count the negative
 eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy.linalg.lapack import dsytrf, dsytrs
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from ..arrays import Array, Index
+from .multifrontal import Elimination, Multifrontal, SingularMatrix
 
 DENSE_LIMIT = 600
 """Up to this many unknowns a dense factorization costs less than a sparse one
@@ -26,10 +27,6 @@ REFINEMENTS = 4
 """Solves at most with one factorization; the second is usually the last."""
 
 
-class SingularMatrix(ArithmeticError):
-    """The factorization broke down or its solution misses the right-hand side."""
-
-
 class SparsePattern:
     """Where element blocks land in a compressed column matrix, found once.
 
@@ -38,10 +35,12 @@ class SparsePattern:
     size : number of unknowns.
     groups : arrays (elements, local) of the unknown of each local function, -1 where fixed;
         unknowns from ``size`` on are left out.
+    places : (size, dimensions) where each unknown is.
     """
 
-    def __init__(self, size: int, groups: Sequence[Index]) -> None:
+    def __init__(self, size: int, groups: Sequence[Index], places: Array) -> None:
         self.size = size
+        self._places = places
         keys = np.concatenate([_keys(size, unknowns) for unknowns in groups])
         columns, rows = np.divmod(keys[keys < size * size], size)
         filled = csc_array((np.ones(len(rows), bool), (rows, columns)), (size, size))
@@ -51,6 +50,11 @@ class SparsePattern:
         self.entries = columns * size + self.rows
         self.diagonal = np.searchsorted(self.entries, np.arange(size) * (size + 1))
         self._slots: dict[bytes, Index] = {}
+
+    @cached_property
+    def elimination(self) -> Elimination:
+        """The order in which matrices with this pattern are factorized."""
+        return Elimination(self.rows, self.starts, self._places)
 
     def slots(self, unknowns: Index) -> Index:
         """Places of blocks that lie inside the pattern, found once for each set of them."""
@@ -115,14 +119,11 @@ class Matrix:
         below = self.full[: self.pattern.size].T
         return np.hstack([np.vstack([self.sparse().toarray(), below]), self.full])
 
-    def sparse(self, shift: Array | None = None) -> Any:
-        """The part with a pattern as ``scipy.sparse.csc_array``, a shift added to the diagonal."""
+    def sparse(self) -> Any:
+        """The part with a pattern as ``scipy.sparse.csc_array``."""
         pattern = self.pattern
         assert pattern is not None
-        data = self.data if shift is None else self.data.copy()
-        if shift is not None:
-            data[pattern.diagonal] += shift
-        return csc_array((data, pattern.rows, pattern.starts), (pattern.size, pattern.size))
+        return csc_array((self.data, pattern.rows, pattern.starts), (pattern.size, pattern.size))
 
     def __matmul__(self, vector: Array) -> Array:
         if self.pattern is None:
@@ -191,7 +192,7 @@ class Bordered:
 
     def _count(self) -> None:
         negative = int((np.linalg.eigvalsh(self._schur) < 0).sum()) if self._schur.size else 0
-        self.index = self._inner + negative - self._m
+        self.index = self._inner.negative + negative - self._m
 
     def last(self, count: int) -> Array:
         """(count, count) Hessian of the last unknowns when all the others follow them."""
@@ -226,21 +227,13 @@ class Bordered:
         pattern, full, n = self._matrix.pattern, self._matrix.full, self._n
         assert pattern is not None
         first = self._first = pattern.size
-        try:
-            self._lu = splu(
-                self._matrix.sparse(None if shift is None else shift[:first]),
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        except RuntimeError as error:
-            raise SingularMatrix(str(error)) from error
-        if not np.array_equal(self._lu.perm_r, self._lu.perm_c):
-            raise SingularMatrix("a pivot vanished, so the inertia is not known")
-        # Without row exchanges U = D L^T, so the signs of its diagonal are the inertia of K;
-        # the Schur complement of the border and of the full columns adds its own (Sylvester,
-        # Haynsworth).
-        self._inner = int((self._lu.U.diagonal() < 0).sum())
+        data = self._matrix.data
+        if shift is not None:
+            data = data.copy()
+            data[pattern.diagonal] += shift[:first]
+        self._inner = Multifrontal(pattern.elimination, data)
+        # the Schur complement of the border and of the full columns adds its own negative
+        # eigenvalues (Haynsworth)
         self._outer = np.hstack([full[:first], self._border[:first]])
         corner = np.zeros(2 * (self._outer.shape[1],))
         corner[: n - first, : n - first] = full[first:]
@@ -248,7 +241,7 @@ class Bordered:
             corner[: n - first, : n - first] += np.diag(shift[first:])
         corner[: n - first, n - first :] = self._border[first:]
         corner[n - first :, : n - first] = self._border[first:].T
-        self._outer_solved = self._lu.solve(self._outer) if corner.size else self._outer
+        self._outer_solved = self._inner.solve(self._outer) if corner.size else self._outer
         self._schur = corner - self._outer.T @ self._outer_solved
         self._count()
 
@@ -256,7 +249,7 @@ class Bordered:
         if self._matrix.pattern is None:
             both = dsytrs(self._ldl, self._pivots, np.append(top, bottom), lower=1)[0].ravel()
             return both[: self._n], both[self._n :]
-        s = self._lu.solve(top[: self._first])
+        s = self._inner.solve(top[: self._first])
         if not self._schur.size:
             return s, bottom
         rest = np.append(top[self._first :], bottom) - self._outer.T @ s

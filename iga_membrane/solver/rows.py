@@ -121,7 +121,8 @@ class Rows:
 
     def _pattern_of(self, groups: list[Index]) -> SparsePattern:
         own = self.size - len(self.spines.shifts)
-        return SparsePattern(own, [self.unknowns(functions) for functions in groups])
+        unknowns = [self.unknowns(functions) for functions in groups]
+        return SparsePattern(own, unknowns, self.spines.places[:own])
 
 
 class FirstOrder:

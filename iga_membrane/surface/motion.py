@@ -177,6 +177,14 @@ class Spines:
     def _motion(self, rows: Array) -> Motion:
         return Motion(self.points, rows, self.unknowns, self.size, self.shifts, self.share)
 
+    @cached_property
+    def places(self) -> Array:
+        """(n, 3) where the first control point of each unknown starts; 0 for shifts."""
+        places = np.zeros((self.size + 1, 3))
+        own = len(self.points) - len(self.shifts)
+        places[self.unknowns[:own][::-1]] = self._start[self.points[:own][::-1]]
+        return places[:-1]
+
     def lag(self, surface: Surface) -> Array:
         """(3,) way by which the top, which takes part in shifts, is ahead of the foot."""
         if not len(self.shifts):
