@@ -228,8 +228,7 @@ class Spines:
         v1, d1, v2, d2 = self._derivative_matrices
         net, weights = net_of(surface.space, surface.points), surface.space.weights
         if weights is None:
-            a1 = np.einsum("ab,bjc->ajc", d1, np.einsum("jk,bkc->bjc", v2, net))
-            a2 = np.einsum("ab,bjc->ajc", v1, np.einsum("jk,bkc->bjc", d2, net))
+            a1, a2 = along_net(d1, v2, net), along_net(v1, d2, net)
         else:
             k = surface.at(surface.space.abscissae, 1)
             a1, a2 = k.tangents[..., 0, :], k.tangents[..., 1, :]
@@ -270,6 +269,11 @@ def _numbered(owner: Index, fixed: NDArray[np.bool_]) -> Index:
     leaders = np.unique(owner[~fixed])
     numbers = np.searchsorted(leaders, owner)
     return np.where(fixed, -1, numbers)
+
+
+def along_net(one: Array, two: Array, net: Array) -> Array:
+    """(a, b, 3) a net (n1, n2, 3) times one matrix (a, n1) and the other (b, n2)."""
+    return np.tensordot(one, two @ net, axes=1)
 
 
 def _points_of_field(space: Space, net: Array) -> Array:
