@@ -7,10 +7,12 @@ from time import process_time
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..scenes.scene import Scene
+from ..surface.cartesian import Cartesian
 from ..surface.motion import Motion
 from ..surface.surface import Surface
+from ..terms import BodyDensity, pairs
 from ..terms import variations as vary
 from . import inside_lines
 from .functional import Functional
@@ -155,8 +157,7 @@ class Assembly(Functional):
             push = self.contact.forces(self.contact.touch(points), rows)
             total.add(push, rows.functions)
         if self.stabilizer is not None:
-            hold = self.stabilizer.forces(points)
-            total.add_unjudged(hold[:, self.rows.columns], self.rows.wide.functions)
+            total.add_nodal(self.stabilizer.forces(points), self.table.functions)
         self.edges.add_forces(total, points, self.body, self.held)
         return total
 
@@ -166,11 +167,13 @@ class Assembly(Functional):
         """Hessian of the Lagrangian."""
         body, unknowns = self.density(multipliers), self.rows.unknowns
         matrix = self._matrix()
-        for rows, part in self.parts(points, at):
-            blocks = vary.hessian(
-                rows, part, self.tension, body, directions[rows.functions], self._kernels
-            )
-            matrix.add(unknowns(rows.functions), blocks)
+        if isinstance(self.spines, Cartesian):
+            self._add_by_pairs(matrix, points, directions, at, body)
+        else:
+            for rows, part in self.parts(points, at):
+                along = directions[rows.functions]
+                blocks = vary.hessian(rows, part, self.tension, body, along, self._kernels)
+                matrix.add(unknowns(rows.functions), blocks)
         if self.trim is not None:
             inside_lines.add_hessian(
                 matrix, self.rows, self.trim, points, directions, self.tension, body
@@ -179,13 +182,32 @@ class Assembly(Functional):
             rows = self.contact_rows
             near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
             matrix.add(unknowns(rows.functions[near]), blocks)
-        if self.stabilizer is not None:
-            rows = self.rows.wide
-            along = directions[rows.functions]
-            blocks = self.stabilizer.hessian(points, rows, self.rows.columns, along)
-            matrix.add(unknowns(rows.functions), blocks)
         self.edges.add_hessian(matrix, directions, points, body, self.line_load(multipliers))
         return matrix
+
+    def _add_by_pairs(
+        self,
+        matrix: Matrix,
+        points: Array,
+        directions: Array,
+        at: vary.ElementPoints,
+        body: BodyDensity,
+    ) -> None:
+        """Where control points have three unknowns: the liquid's Hessian and the stabilizer's."""
+        table, sums = self.table, self.rows.pair_sums
+
+        def liquid(some: Index) -> pairs.Form:
+            return pairs.liquid(table.weights[some], at.part(some), self.tension, body)
+
+        numbers = pairs.hessian(table, liquid)
+        if self.stabilizer is not None:
+            held = self.stabilizer.hessian(points)
+            if self.stabilizer.projected:
+                along = self.stabilizer.tangential(directions, self.spines.points)
+                sums.add(matrix, held, along)
+            else:
+                numbers += held
+        sums.add(matrix, numbers, directions)
 
     def mass(self, surface: Surface, directions: Array) -> Matrix:
         """Mass matrix of normal displacement; of all displacement where tangents move too."""

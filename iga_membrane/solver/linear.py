@@ -106,6 +106,10 @@ class Matrix:
                 rows.ravel() + 1, blocks[elements, :, local].ravel(), self.size + 1
             )[1:]
 
+    def add_at(self, places: Index, values: Array) -> None:
+        """Add values at places of :attr:`data`."""
+        self.data += np.bincount(places, values, len(self.data))
+
     def diagonal(self) -> Array:
         """(n,)"""
         if self.pattern is None:
