@@ -17,10 +17,10 @@ from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_record import contact_record
 from .forces import ParticleForces, particle_forces
+from .inverse_root import SingularMatrix
 from .judge import contact_objection, judge, overload, reaches_boundary, too_soft
 from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, volume
-from .multifrontal import SingularMatrix
 from .newton import NewtonResult
 from .options import SolverOptions
 from .particles import forces_on_particles

@@ -13,19 +13,14 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.linalg.blas import dsyrk
-from scipy.linalg.lapack import dpotrf, dtrtri
+from scipy.linalg.lapack import dtrtri
 from scipy.sparse import csr_array
 
 from ..arrays import Array, Index, Mask
+from .inverse_root import InverseRoot, SingularMatrix
 
 LEAF = 96
 """Unknowns that are not halved further: fewer cost calls, more cost arithmetic."""
-VANISHED = 1e-15
-"""Eigenvalue over the largest of its front below which a front is singular."""
-
-
-class SingularMatrix(ArithmeticError):
-    """The factorization broke down or its solution misses the right-hand side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,14 +95,8 @@ class Elimination:
             self.fronts.append(Front(slice(first, end), rest, entries, flat, below))
 
 
-Part = tuple[Array, Array, "Array | None"]
-"""``H, H F12`` and signs S of a front with ``H F11 H^T = S``; no signs where it is positive."""
-
-
 class Multifrontal:
     """Factorization ``K = L S L^T`` of a symmetric matrix, S a diagonal of signs.
-
-    Fronts that are not positive definite are taken apart by their eigenvalues.
 
     Parameters
     ----------
@@ -131,7 +120,7 @@ class Multifrontal:
             raise SingularMatrix("the matrix has entries that are not finite")
         values = data[elimination.values]
         left: dict[int, Array] = {}
-        self._parts: list[Part] = []
+        self._parts: list[tuple[InverseRoot, Array]] = []
         for number, front in enumerate(elimination.fronts):
             k, m = front.own.stop - front.own.start, len(front.rest)
             own = np.zeros((k, k + m))
@@ -139,32 +128,33 @@ class Multifrontal:
             rest = np.zeros((m, m))
             for child, runs in front.below:
                 _add(own, rest, left.pop(child), runs)
-            h, signs = _inverse_root(own[:, :k])
-            x = h @ own[:, k:]
-            if m and signs is None:
+            root = InverseRoot(own[:, :k], _inverse)
+            self.negative += root.negative
+            x = root.h @ own[:, k:]
+            if m and root.signs is None:
                 # the upper triangles of rest and of what is left are those that count
                 left[number] = dsyrk(-1.0, x.T, 1.0, rest.T, lower=1, overwrite_c=1).T
-            elif signs is not None:
-                self.negative += int((signs < 0).sum())
-                left[number] = rest - x.T @ (signs[:, None] * x)
-            self._parts.append((h, x, signs))
+            elif m:
+                left[number] = rest - x.T @ root.signed(x)
+            self._parts.append((root, x))
 
     def solve(self, right: Array) -> Array:
         """Solution for right-hand sides (n,) or (n, k)."""
         order, fronts = self._elimination.order, self._elimination.fronts
         s = right[order]
-        for front, (h, x, signs) in zip(fronts, self._parts, strict=True):
-            s[front.own] = h @ s[front.own]
-            s[front.rest] -= x.T @ _signed(signs, s[front.own])
-        for front, (h, x, signs) in zip(fronts[::-1], self._parts[::-1], strict=True):
-            s[front.own] = h.T @ _signed(signs, s[front.own] - x @ s[front.rest])
+        for front, (root, x) in zip(fronts, self._parts, strict=True):
+            s[front.own] = root.h @ s[front.own]
+            s[front.rest] -= x.T @ root.signed(s[front.own])
+        for front, (root, x) in zip(fronts[::-1], self._parts[::-1], strict=True):
+            s[front.own] = root.h.T @ root.signed(s[front.own] - x @ s[front.rest])
         solution = np.empty_like(s)
         solution[order] = s
         return solution
 
 
-def _signed(signs: Array | None, s: Array) -> Array:
-    return s if signs is None else (signs * s.T).T
+def _inverse(low: Array) -> Array:
+    """Inverse of a lower triangular matrix by LAPACK, which numpy does not offer."""
+    return np.asarray(dtrtri(low, lower=1)[0])
 
 
 def _add(own: Array, rest: Array, below: Array, runs: list[tuple[int, int, int]]) -> None:
@@ -175,19 +165,6 @@ def _add(own: Array, rest: Array, below: Array, runs: list[tuple[int, int, int]]
         for j, j_end, column in runs[n:]:
             left = column - first
             target[top : top + i_end - i, left : left + j_end - j] += below[i:i_end, j:j_end]
-
-
-def _inverse_root(upper: Array) -> tuple[Array, Array | None]:
-    """H and signs S with ``H F H^T = S`` of a matrix with this upper triangle; see
-    :data:`Part`."""
-    low, failed = dpotrf(upper.T, lower=1)
-    if not failed:
-        return dtrtri(low, lower=1)[0], None
-    values, vectors = np.linalg.eigh(upper, UPLO="U")
-    size = np.abs(values)
-    if size.min() <= VANISHED * size.max():
-        raise SingularMatrix("the matrix is singular")
-    return vectors.T / np.sqrt(size)[:, None], np.sign(values)
 
 
 def _dissected(graph: csr_array, points: Array, sizes: Index) -> list[tuple[Index, list[int]]]:

@@ -18,8 +18,8 @@ from ..splines import Grading
 from ..surface.reparametrize import distortion, regridded
 from ..surface.surface import Surface
 from .assembly import Assembly, System
+from .inverse_root import SingularMatrix
 from .linear import Bordered
-from .multifrontal import SingularMatrix
 from .status import Status
 
 NEAR = 1e-3
