@@ -15,7 +15,7 @@ from ..surface.surface import Surface
 from ..terms import BodyDensity, pairs
 from ..terms import variations as vary
 from . import inside_lines
-from .functional import Functional
+from .functional import Energies, Functional
 from .linear import Matrix
 from .rows import FirstOrder
 
@@ -26,20 +26,25 @@ class System:
 
     Attributes
     ----------
+    energies : of the state.
     gradient : (n,) derivative of the energy.
     constraint_gradients : (n, m).
-    constraints : (m,) prescribed integrals minus their values.
     scale : norm of the absolute force contributions, against which a residual is judged.
     matrix : Hessian of the energy minus multipliers times constraints.
     shifts : how many of the last unknowns are shifts.
     """
 
+    energies: Energies
     gradient: Array
     constraint_gradients: Array
-    constraints: Array
     scale: float
     matrix: Matrix
     shifts: int
+
+    @property
+    def constraints(self) -> Array:
+        """(m,) prescribed integrals minus their values."""
+        return self.energies.constraints
 
     def residual(self, multipliers: Array) -> Array:
         """(n,) out-of-balance forces."""
@@ -129,14 +134,14 @@ class Assembly(Functional):
         start = process_time()
         points = surface.points
         at = vary.element_points(self.table, points)
-        _, constraints = self.values(points, at)
+        energies = self.energies_at(points, at)
         first = self._first_order(points, directions, at)
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
         scale = first.scale + np.abs(first.columns) @ np.abs(multipliers)
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
         shifts = len(self.spines.shifts)
-        return System(first.gradient, first.columns, constraints, size, matrix, shifts)
+        return System(energies, first.gradient, first.columns, size, matrix, shifts)
 
     def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
         """Gradients of the energy (n,) and of the constraints (n, m), without the Hessian."""

@@ -291,7 +291,7 @@ def _search(
     With the new multipliers m the slope along the Newton step is ``-s^T K s - kappa |c|^2``;
     kappa makes it negative even where K is not.
     """
-    start = assembly.energies(surface)
+    start = system.energies
     c, multipliers = system.constraints, direction.multipliers
     along = system.gradient - system.constraint_gradients @ multipliers
     slope = float(along @ direction.step)
