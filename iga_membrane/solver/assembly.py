@@ -63,7 +63,9 @@ class Assembly(Functional):
     def __init__(self, scene: Scene, points: int | None = None) -> None:
         super().__init__(scene, points)
         before = process_time()
-        self._kernels = vary.compiled_kernels(len(self.table.functions))
+        self._kernels = None
+        if not isinstance(self.spines, Cartesian):
+            self._kernels = vary.compiled_kernels(len(self.table.functions))
         if self._kernels is not None:
             self._kernels.warm_up()
         self.compile_seconds = process_time() - before
