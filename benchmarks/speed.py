@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import iga_membrane as iga
-import iga_membrane.solver.multifrontal  # noqa: F401  # loads scipy before anything is timed
+import iga_membrane.solver.multifrontal  # loads scipy before anything is timed
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.solver.linear import Bordered
 from iga_membrane.solver.newton import NewtonOptions, newton
