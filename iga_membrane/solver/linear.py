@@ -19,11 +19,10 @@ from .inverse_root import InverseRoot, SingularMatrix
 if TYPE_CHECKING:
     from .multifrontal import Elimination, Multifrontal
 
-# scipy takes a third of a small solve's process, so it is imported where a matrix is sparse
+# scipy takes a quarter of a small solve's process, so it is imported where a matrix is sparse
 DENSE_LIMIT = 400
-"""Up to this many unknowns a dense factorization costs less than a sparse one
-(docs/results/choices.md)."""
-
+"""Up to this many unknowns a solve costs less with dense factorizations than with sparse ones and
+what they load (docs/results/choices.md)."""
 WEIGHT = 10.0
 """Stiffness of the constraints of a dense matrix over its largest diagonal entry."""
 REFINEMENTS = 4
