@@ -7,13 +7,15 @@ from time import process_time
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..scenes.scene import Scene
+from ..surface.cartesian import Cartesian
 from ..surface.motion import Motion
 from ..surface.surface import Surface
+from ..terms import BodyDensity, pairs
 from ..terms import variations as vary
 from . import inside_lines
-from .functional import Functional
+from .functional import Energies, Functional
 from .linear import Matrix
 from .rows import FirstOrder
 
@@ -24,20 +26,25 @@ class System:
 
     Attributes
     ----------
+    energies : of the state.
     gradient : (n,) derivative of the energy.
     constraint_gradients : (n, m).
-    constraints : (m,) prescribed integrals minus their values.
     scale : norm of the absolute force contributions, against which a residual is judged.
     matrix : Hessian of the energy minus multipliers times constraints.
     shifts : how many of the last unknowns are shifts.
     """
 
+    energies: Energies
     gradient: Array
     constraint_gradients: Array
-    constraints: Array
     scale: float
     matrix: Matrix
     shifts: int
+
+    @property
+    def constraints(self) -> Array:
+        """(m,) prescribed integrals minus their values."""
+        return self.energies.constraints
 
     def residual(self, multipliers: Array) -> Array:
         """(n,) out-of-balance forces."""
@@ -56,7 +63,9 @@ class Assembly(Functional):
     def __init__(self, scene: Scene, points: int | None = None) -> None:
         super().__init__(scene, points)
         before = process_time()
-        self._kernels = vary.compiled_kernels(len(self.table.functions))
+        self._kernels = None
+        if not isinstance(self.spines, Cartesian):
+            self._kernels = vary.compiled_kernels(len(self.table.functions))
         if self._kernels is not None:
             self._kernels.warm_up()
         self.compile_seconds = process_time() - before
@@ -127,14 +136,14 @@ class Assembly(Functional):
         start = process_time()
         points = surface.points
         at = vary.element_points(self.table, points)
-        _, constraints = self.values(points, at)
+        energies = self.energies_at(points, at)
         first = self._first_order(points, directions, at)
         matrix = self._second_order(points, directions, at, multipliers)
         self.seconds += process_time() - start
         scale = first.scale + np.abs(first.columns) @ np.abs(multipliers)
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
         shifts = len(self.spines.shifts)
-        return System(first.gradient, first.columns, constraints, size, matrix, shifts)
+        return System(energies, first.gradient, first.columns, size, matrix, shifts)
 
     def forces(self, surface: Surface, directions: Array) -> tuple[Array, Array]:
         """Gradients of the energy (n,) and of the constraints (n, m), without the Hessian."""
@@ -155,8 +164,7 @@ class Assembly(Functional):
             push = self.contact.forces(self.contact.touch(points), rows)
             total.add(push, rows.functions)
         if self.stabilizer is not None:
-            hold = self.stabilizer.forces(points)
-            total.add_unjudged(hold[:, self.rows.columns], self.rows.wide.functions)
+            total.add_nodal(self.stabilizer.forces(points), self.table.functions)
         self.edges.add_forces(total, points, self.body, self.held)
         return total
 
@@ -166,11 +174,13 @@ class Assembly(Functional):
         """Hessian of the Lagrangian."""
         body, unknowns = self.density(multipliers), self.rows.unknowns
         matrix = self._matrix()
-        for rows, part in self.parts(points, at):
-            blocks = vary.hessian(
-                rows, part, self.tension, body, directions[rows.functions], self._kernels
-            )
-            matrix.add(unknowns(rows.functions), blocks)
+        if isinstance(self.spines, Cartesian):
+            self._add_by_pairs(matrix, points, directions, at, body)
+        else:
+            for rows, part in self.parts(points, at):
+                along = directions[rows.functions]
+                blocks = vary.hessian(rows, part, self.tension, body, along, self._kernels)
+                matrix.add(unknowns(rows.functions), blocks)
         if self.trim is not None:
             inside_lines.add_hessian(
                 matrix, self.rows, self.trim, points, directions, self.tension, body
@@ -179,13 +189,32 @@ class Assembly(Functional):
             rows = self.contact_rows
             near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
             matrix.add(unknowns(rows.functions[near]), blocks)
-        if self.stabilizer is not None:
-            rows = self.rows.wide
-            along = directions[rows.functions]
-            blocks = self.stabilizer.hessian(points, rows, self.rows.columns, along)
-            matrix.add(unknowns(rows.functions), blocks)
         self.edges.add_hessian(matrix, directions, points, body, self.line_load(multipliers))
         return matrix
+
+    def _add_by_pairs(
+        self,
+        matrix: Matrix,
+        points: Array,
+        directions: Array,
+        at: vary.ElementPoints,
+        body: BodyDensity,
+    ) -> None:
+        """Where control points have three unknowns: the liquid's Hessian and the stabilizer's."""
+        table, sums = self.table, self.rows.pair_sums
+
+        def liquid(some: Index) -> pairs.Form:
+            return pairs.liquid(table.weights[some], at.part(some), self.tension, body)
+
+        numbers = pairs.hessian(table, liquid)
+        if self.stabilizer is not None:
+            held = self.stabilizer.hessian(points)
+            if self.stabilizer.projected:
+                along = self.stabilizer.tangential(directions, self.spines.points)
+                sums.add(matrix, held, along)
+            else:
+                numbers += held
+        sums.add(matrix, numbers, directions)
 
     def mass(self, surface: Surface, directions: Array) -> Matrix:
         """Mass matrix of normal displacement; of all displacement where tangents move too."""

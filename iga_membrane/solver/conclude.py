@@ -17,8 +17,8 @@ from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_record import contact_record
 from .forces import ParticleForces, particle_forces
+from .inverse_root import SingularMatrix
 from .judge import contact_objection, judge, overload, reaches_boundary, too_soft
-from .linear import SingularMatrix
 from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, volume
 from .newton import NewtonResult

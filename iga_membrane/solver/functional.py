@@ -187,7 +187,12 @@ class Functional:
         """Energy and constraints of a state."""
         start = process_time()
         points = surface.points
-        at = vary.element_points(self.table, points)
+        found = self.energies_at(points, vary.element_points(self.table, points))
+        self.seconds += process_time() - start
+        return found
+
+    def energies_at(self, points: Array, at: vary.ElementPoints) -> Energies:
+        """The same, its geometry at the quadrature points being known."""
         total, constraints = self.values(points, at)
         if self.contact is not None:
             total += self.contact.energy(self.contact.touch(points))
@@ -198,7 +203,6 @@ class Functional:
         true, counts = True, np.ones(len(at.c), bool)
         if self.trim is not None:
             true, counts = self.trim.true(points), self.trim.counts(points)
-        self.seconds += process_time() - start
         lowest = float(at.x[counts, :, 2].min(initial=np.inf))
         return Energies(total, constraints, at.c, lowest, true, counts)
 

@@ -1,4 +1,4 @@
-"""Symmetric matrices by size: dense LAPACK when small, sparse with fixed pattern when large.
+"""Symmetric matrices by size: dense when small, sparse fronts when large.
 
 Both solve ``K s - B m = -g, B^T s = -c`` (a Newton step with multipliers) and count the negative
 eigenvalues of ``K`` on the null space of ``B^T``: the stability index.
@@ -8,26 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.linalg.lapack import dsytrf, dsytrs
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from ..arrays import Array, Index
+from .inverse_root import InverseRoot, SingularMatrix
 
-DENSE_LIMIT = 600
-"""Up to this many unknowns a dense factorization costs less than a sparse one
-(docs/results/choices.md)."""
+if TYPE_CHECKING:
+    from .multifrontal import Elimination, Multifrontal
 
-
+# scipy takes a quarter of a small solve's process, so it is imported where a matrix is sparse
+DENSE_LIMIT = 400
+"""Up to this many unknowns a solve costs less with dense factorizations than with sparse ones and
+what they load (docs/results/choices.md)."""
+WEIGHT = 10.0
+"""Stiffness of the constraints of a dense matrix over its largest diagonal entry."""
 REFINEMENTS = 4
 """Solves at most with one factorization; the second is usually the last."""
-
-
-class SingularMatrix(ArithmeticError):
-    """The factorization broke down or its solution misses the right-hand side."""
 
 
 class SparsePattern:
@@ -38,10 +37,14 @@ class SparsePattern:
     size : number of unknowns.
     groups : arrays (elements, local) of the unknown of each local function, -1 where fixed;
         unknowns from ``size`` on are left out.
+    places : (size, dimensions) where each unknown is.
     """
 
-    def __init__(self, size: int, groups: Sequence[Index]) -> None:
+    def __init__(self, size: int, groups: Sequence[Index], places: Array) -> None:
+        from scipy.sparse import csc_array
+
         self.size = size
+        self._places = places
         keys = np.concatenate([_keys(size, unknowns) for unknowns in groups])
         columns, rows = np.divmod(keys[keys < size * size], size)
         filled = csc_array((np.ones(len(rows), bool), (rows, columns)), (size, size))
@@ -51,6 +54,13 @@ class SparsePattern:
         self.entries = columns * size + self.rows
         self.diagonal = np.searchsorted(self.entries, np.arange(size) * (size + 1))
         self._slots: dict[bytes, Index] = {}
+
+    @cached_property
+    def elimination(self) -> Elimination:
+        """The order in which matrices with this pattern are factorized."""
+        from .multifrontal import Elimination
+
+        return Elimination(self.rows, self.starts, self._places)
 
     def slots(self, unknowns: Index) -> Index:
         """Places of blocks that lie inside the pattern, found once for each set of them."""
@@ -102,6 +112,10 @@ class Matrix:
                 rows.ravel() + 1, blocks[elements, :, local].ravel(), self.size + 1
             )[1:]
 
+    def add_at(self, places: Index, values: Array) -> None:
+        """Add values at places of :attr:`data`."""
+        self.data += np.bincount(places, values, len(self.data))
+
     def diagonal(self) -> Array:
         """(n,)"""
         if self.pattern is None:
@@ -115,14 +129,13 @@ class Matrix:
         below = self.full[: self.pattern.size].T
         return np.hstack([np.vstack([self.sparse().toarray(), below]), self.full])
 
-    def sparse(self, shift: Array | None = None) -> Any:
-        """The part with a pattern as ``scipy.sparse.csc_array``, a shift added to the diagonal."""
+    def sparse(self) -> Any:
+        """The part with a pattern as ``scipy.sparse.csc_array``."""
+        from scipy.sparse import csc_array
+
         pattern = self.pattern
         assert pattern is not None
-        data = self.data if shift is None else self.data.copy()
-        if shift is not None:
-            data[pattern.diagonal] += shift
-        return csc_array((data, pattern.rows, pattern.starts), (pattern.size, pattern.size))
+        return csc_array((self.data, pattern.rows, pattern.starts), (pattern.size, pattern.size))
 
     def __matmul__(self, vector: Array) -> Array:
         if self.pattern is None:
@@ -146,10 +159,10 @@ class Bordered:
         self._border = border
         self._shift = shift
         self._matrix = matrix
-        if matrix.pattern is None:
-            self._factor_dense(shift)
-        else:
-            self._factor_sparse(shift)
+        self._weights: Array = np.zeros(self._m)
+        self._first = self._n if matrix.pattern is None else matrix.pattern.size
+        self._inner = self._dense() if matrix.pattern is None else self._sparse(matrix.pattern)
+        self._reduce()
 
     def solve(self, top: Array, bottom: Array) -> tuple[Array, Array]:
         """``K s + B q = top``, ``B^T s = bottom``, with iterative refinement."""
@@ -191,7 +204,7 @@ class Bordered:
 
     def _count(self) -> None:
         negative = int((np.linalg.eigvalsh(self._schur) < 0).sum()) if self._schur.size else 0
-        self.index = self._inner + negative - self._m
+        self.index = self._inner.negative + negative - self._m
 
     def last(self, count: int) -> Array:
         """(count, count) Hessian of the last unknowns when all the others follow them."""
@@ -206,67 +219,52 @@ class Bordered:
             r = r - self._shift * s
         return r, bottom - self._border.T @ s
 
-    def _factor_dense(self, shift: Array | None) -> None:
-        n, m = self._n, self._m
-        full = np.zeros((n + m, n + m), order="F")
-        full[:n, :n] = self._matrix.dense()
-        if shift is not None:
-            full[np.arange(n), np.arange(n)] += shift
-        full[:n, n:] = self._border
-        full[n:, :n] = self._border.T
+    def _dense(self) -> InverseRoot:
+        """Root of ``K + B W B^T``, which is positive wherever K is on the null space of B^T and the
+        weights are large; the multipliers absorb the rest (augmented Lagrangian)."""
+        full = self._matrix.dense().copy()
+        if self._shift is not None:
+            full[np.diag_indices(self._n)] += self._shift
+        if self._m:
+            largest = np.abs(full.diagonal()).max(initial=0.0)
+            squares = (self._border**2).sum(axis=0)
+            self._weights = WEIGHT * largest / np.where(squares > 0.0, squares, 1.0)
+            full += (self._border * self._weights) @ self._border.T
         if not np.isfinite(full).all():
             raise SingularMatrix("the matrix has entries that are not finite")
-        # LAPACK's blocked driver needs a work array of 64 columns to run at full speed
-        self._ldl, self._pivots, info = dsytrf(full, lower=1, lwork=64 * (n + m))
-        if info:
-            raise SingularMatrix("the matrix is singular")
-        self.index = _negative_pivots(self._ldl, self._pivots) - m
+        return InverseRoot(full)
 
-    def _factor_sparse(self, shift: Array | None) -> None:
-        pattern, full, n = self._matrix.pattern, self._matrix.full, self._n
-        assert pattern is not None
-        first = self._first = pattern.size
-        try:
-            self._lu = splu(
-                self._matrix.sparse(None if shift is None else shift[:first]),
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        except RuntimeError as error:
-            raise SingularMatrix(str(error)) from error
-        if not np.array_equal(self._lu.perm_r, self._lu.perm_c):
-            raise SingularMatrix("a pivot vanished, so the inertia is not known")
-        # Without row exchanges U = D L^T, so the signs of its diagonal are the inertia of K;
-        # the Schur complement of the border and of the full columns adds its own (Sylvester,
-        # Haynsworth).
-        self._inner = int((self._lu.U.diagonal() < 0).sum())
+    def _sparse(self, pattern: SparsePattern) -> Multifrontal:
+        from .multifrontal import Multifrontal
+
+        data = self._matrix.data
+        if self._shift is not None:
+            data = data.copy()
+            data[pattern.diagonal] += self._shift[: self._first]
+        return Multifrontal(pattern.elimination, data)
+
+    def _reduce(self) -> None:
+        """The Schur complement of the border and of the full columns; it adds its own negative
+        eigenvalues (Haynsworth)."""
+        first, n = self._first, self._n
+        full = self._matrix.full
         self._outer = np.hstack([full[:first], self._border[:first]])
         corner = np.zeros(2 * (self._outer.shape[1],))
         corner[: n - first, : n - first] = full[first:]
-        if shift is not None:
-            corner[: n - first, : n - first] += np.diag(shift[first:])
+        if self._shift is not None:
+            corner[: n - first, : n - first] += np.diag(self._shift[first:])
         corner[: n - first, n - first :] = self._border[first:]
         corner[n - first :, : n - first] = self._border[first:].T
-        self._outer_solved = self._lu.solve(self._outer) if corner.size else self._outer
+        self._outer_solved = self._inner.solve(self._outer) if corner.size else self._outer
         self._schur = corner - self._outer.T @ self._outer_solved
         self._count()
 
     def _solve_once(self, top: Array, bottom: Array) -> tuple[Array, Array]:
-        if self._matrix.pattern is None:
-            both = dsytrs(self._ldl, self._pivots, np.append(top, bottom), lower=1)[0].ravel()
-            return both[: self._n], both[self._n :]
-        s = self._lu.solve(top[: self._first])
+        s = self._inner.solve(top[: self._first])
         if not self._schur.size:
             return s, bottom
         rest = np.append(top[self._first :], bottom) - self._outer.T @ s
         q = np.linalg.solve(self._schur, rest)
         last = self._n - self._first
-        return np.append(s - self._outer_solved @ q, q[:last]), q[last:]
-
-
-def _negative_pivots(ldl: Array, pivots: Index) -> int:
-    """Negative eigenvalues of the block diagonal factor of LAPACK's Bunch-Kaufman LDL^T."""
-    d = np.diag(ldl)
-    # a 2 x 2 pivot block (both entries of ``pivots`` negative) is always indefinite: one of each
-    return int((d[pivots > 0] < 0).sum() + (pivots < 0).sum() // 2)
+        s = np.append(s - self._outer_solved @ q, q[:last])
+        return s, q[last:] + self._weights * bottom

@@ -15,7 +15,7 @@ from ..scenes.scene import Ramp, Scene
 from ..surface.reparametrize import regridded
 from .assembly import Assembly
 from .footing import footing
-from .linear import SingularMatrix
+from .inverse_root import SingularMatrix
 from .newton import NewtonOptions, NewtonResult, newton
 from .predictor import first
 from .stability import Stability, stability_of

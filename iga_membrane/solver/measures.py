@@ -365,21 +365,24 @@ def _farthest(surface: Surface, measure: Callable[[Array], Array]) -> Array:
     axes = [np.linspace(a, b, n) for a, b, n in zip(first, last, (9, 41), strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     values = measure(surface.at(grid, 1).position)
-    best, most = np.zeros(3), -np.inf
     # the corners of a pillow are one point
-    for start in grid[np.argsort(-values)[:CORNERS]]:
-        middle, reach = start, np.array([axis[1] - axis[0] for axis in axes])
-        for _ in range(8):
-            low, high = np.maximum(middle - reach, first), np.minimum(middle + reach, last)
-            near = [np.linspace(a, b, n) for a, b, n in zip(low, high, (5, 11), strict=True)]
-            xi = np.stack(np.meshgrid(*near, indexing="ij"), axis=-1).reshape(-1, 2)
-            x = surface.at(xi, 1).position
-            values = measure(x)
-            k = int(values.argmax())
-            middle, reach = xi[k], 1.01 * np.array([axis[1] - axis[0] for axis in near])
-            if values[k] >= most:
-                best, most = x[k], values[k]
+    middle = grid[np.argsort(-values)[:CORNERS], None]
+    reach = np.array([axis[1] - axis[0] for axis in axes])
+    best, most = np.zeros(3), -np.inf
+    unit = np.stack(np.meshgrid(*(np.linspace(0, 1, n) for n in ZOOM), indexing="ij"), axis=-1)
+    for _ in range(8):
+        low, high = np.maximum(middle - reach, first), np.minimum(middle + reach, last)
+        xi = low + (high - low) * unit.reshape(-1, 2)
+        x = surface.at(xi, 1).position
+        values = measure(x)
+        k = np.unravel_index(values.argmax(), values.shape)
+        if values[k] >= most:
+            best, most = x[k], values[k]
+        middle = np.take_along_axis(xi, values.argmax(axis=1)[:, None, None], axis=1)
+        reach = 1.01 * (high - low) / (np.array(ZOOM) - 1.0)
     return best
 
 
 CORNERS = 4
+ZOOM = (5, 11)
+"""Points along both parameters that each start is looked at with."""

@@ -18,7 +18,8 @@ from ..splines import Grading
 from ..surface.reparametrize import distortion, regridded
 from ..surface.surface import Surface
 from .assembly import Assembly, System
-from .linear import Bordered, SingularMatrix
+from .inverse_root import SingularMatrix
+from .linear import Bordered
 from .status import Status
 
 NEAR = 1e-3
@@ -292,7 +293,7 @@ def _search(
     With the new multipliers m the slope along the Newton step is ``-s^T K s - kappa |c|^2``;
     kappa makes it negative even where K is not.
     """
-    start = assembly.energies(surface)
+    start = system.energies
     c, multipliers = system.constraints, direction.multipliers
     along = system.gradient - system.constraint_gradients @ multipliers
     slope = float(along @ direction.step)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from .status import Status
 
 HALVINGS = 6
 """How often a load step that fails is halved."""
+FADING, FADED = 0.5, 0.1
+"""Stabilization of each step at the last load over that of the step before, and over the tension
+where that ends: so the last state does not know with which one they began."""
 RELAXED = 1e-7
 """Displacement along the normals (over the length) of a step at the last load that ends them."""
 RELAXATIONS = 100
@@ -34,8 +38,9 @@ def quasi_static(
 ) -> tuple[NewtonResult, list[LoadStep]]:
     """Walk the ramp of a scene with a stabilized membrane, then relax at its end.
 
-    At a fixed load every step takes over the metric of the last one, so the stabilization stress
-    of eq. (23) fades until it holds only what the discrete membrane cannot balance in its plane.
+    At a fixed load every step takes over the metric of the last one and half its stabilization, so
+    the stress of eq. (23) fades until it holds only what the discrete membrane cannot balance in
+    its plane.
 
     Returns
     -------
@@ -62,8 +67,8 @@ def quasi_static(
             return tried, steps
         else:
             wanted.insert(0, 0.5 * (load + reached))
-    for _ in range(RELAXATIONS):
-        tried = _step(ramp(1.0), assembly, result, result, options)
+    for k in range(RELAXATIONS):
+        tried = _step(ramp(1.0), assembly, result, result, options, relaxing=k + 1)
         steps.append(LoadStep(1.0, len(tried.iterations), tried.status, ramp.value(1.0)))
         if tried.status is not None:
             return tried, steps
@@ -89,9 +94,13 @@ def _step(
     state: NewtonResult,
     before: NewtonResult | None,
     options: NewtonOptions,
+    relaxing: int = 0,
 ) -> NewtonResult:
+    """One load step, or one of those at the last load, by number."""
     assembly.load(scene)
     term = next(t for t in scene.local_terms() if isinstance(t, Stabilization))
+    if relaxing:
+        term = replace(term, mu=max(FADING**relaxing * term.mu, FADED * assembly.tension))
     assembly.begin_step(state.surface, term)
     multipliers = None if before is None else before.multipliers
     result = newton(assembly, state.surface, multipliers, None, options)

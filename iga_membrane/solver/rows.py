@@ -14,6 +14,7 @@ from ..arrays import Array, Index
 from ..splines import EdgeTable, Table
 from ..surface.motion import Spines
 from .linear import DENSE_LIMIT, Matrix, SparsePattern
+from .pair_sums import PairSums
 
 
 class Rows:
@@ -70,11 +71,6 @@ class Rows:
         """The table with three rows of the motion for every control point."""
         return self.table.with_columns(*self._extra(self.table.functions))
 
-    @property
-    def columns(self) -> Index:
-        """Which function belongs to each row of :attr:`wide`."""
-        return np.tile(np.arange(self.table.functions.shape[1]), 3)
-
     def with_shifts(self, table: Table) -> Table:
         """A table with one more column for each shift of the motion."""
         if not len(self.spines.shifts):
@@ -119,9 +115,16 @@ class Rows:
     def _pattern(self) -> SparsePattern:
         return self._pattern_of([rows.functions for _, rows in self.groups])
 
+    @cached_property
+    def pair_sums(self) -> PairSums:
+        """Sums by pairs of control points of all elements."""
+        dense = self.size <= DENSE_LIMIT
+        return PairSums(self.spines, self.table.functions, None if dense else self._pattern)
+
     def _pattern_of(self, groups: list[Index]) -> SparsePattern:
         own = self.size - len(self.spines.shifts)
-        return SparsePattern(own, [self.unknowns(functions) for functions in groups])
+        unknowns = [self.unknowns(functions) for functions in groups]
+        return SparsePattern(own, unknowns, self.spines.places[:own])
 
 
 class FirstOrder:
@@ -155,6 +158,14 @@ class FirstOrder:
     def add_unjudged(self, forces: Array, functions: Index) -> None:
         """Add forces of numerical aids, which are nothing to judge a residual against."""
         self.gradient += self.rows.gather(self.work(forces, functions), functions)
+
+    def add_nodal(self, forces: Array, functions: Index) -> None:
+        """The same by control points (elements, local), whatever their rows."""
+        spines = self.rows.spines
+        count, where = spines.space.count, functions.ravel()
+        nodal = np.stack([np.bincount(where, f.ravel(), count) for f in np.moveaxis(forces, -1, 0)])
+        work = np.einsum("ir,ri->r", nodal[:, spines.points], self.directions)
+        self.gradient += self.rows.gather(work, np.arange(len(work)))
 
     def constrain(self, number: int, forces: Array, functions: Index) -> None:
         """Add derivatives (elements, local, 3) of one constraint."""

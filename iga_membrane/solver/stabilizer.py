@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..splines import Table
-from ..terms import Stabilization
+from ..terms import Stabilization, pairs
 from ..terms import stabilization as stable
 from ..terms.variations import ElementPoints, element_points
 
@@ -42,24 +42,19 @@ class Stabilizer:
     def forces(self, points: Array) -> Array:
         """(elements, local, 3) derivative by local control points, projected if asked for."""
         full = stable.forces(self._mu, self._table, self.before, self._at(points))
-        return self._tangential(full, self._table.functions)
+        return self.tangential(full, self._table.functions)
 
-    def hessian(self, points: Array, rows: Table, columns: Index, directions: Array) -> Array:
-        """(elements, rows, rows) tangent.
-
-        Parameters
-        ----------
-        rows : the table by rows of the motion; columns : the function of each row.
-        directions : (elements, rows, 3).
-        """
-        along = self._tangential(directions, self._table.functions[:, columns])
-        return stable.hessian(self._mu, rows, self.before, self._at(points), along)
+    def hessian(self, points: Array) -> Array:
+        """(9, elements, pairs) tangent before projection, as :func:`..terms.pairs.hessian`."""
+        at, mu, before = self._at(points), self._mu, self.before
+        return pairs.hessian(self._table, lambda e: stable.form(mu, before.part(e), at.part(e)))
 
     def _at(self, points: Array) -> ElementPoints:
         return element_points(self._table, points)
 
-    def _tangential(self, vectors: Array, functions: Index) -> Array:
+    def tangential(self, vectors: Array, points: Index) -> Array:
+        """Vectors (..., 3) at control points (...), projected if the forces are."""
         if not self.projected:
             return vectors
-        n = self._normals[functions]
-        return np.asarray(vectors - np.einsum("eai,eai->ea", vectors, n)[..., None] * n)
+        n = self._normals[points]
+        return np.asarray(vectors - np.einsum("...i,...i->...", vectors, n)[..., None] * n)

@@ -10,8 +10,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_array, diags_array
-from scipy.sparse.linalg import splu
 
 from ..arrays import Array, Index, Mask
 from ..splines import Faces, Space, jumps
@@ -133,6 +131,9 @@ class Ties:
         their directions (count, 3) until they are harmonic in these."""
         if not len(self.idle):
             return vectors
+        from scipy.sparse import coo_array
+        from scipy.sparse.linalg import splu
+
         idle, graph = self._graph
         d = directions[idle]
         if self._factor is None or not np.array_equal(self._factor[0], d):
@@ -149,6 +150,8 @@ class Ties:
     def _graph(self) -> tuple[Index, Any]:
         """The idle control points of the whole body, and their rows of the Laplacian of the graph
         of all control points."""
+        from scipy.sparse import coo_array, diags_array
+
         lonely = np.zeros(self._size + 1, bool)
         lonely[self.idle] = True
         idle = lonely[self._of_points]

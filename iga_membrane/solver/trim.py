@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..arrays import Array, Index, Mask
 from ..splines import LineTable, Space, Table, cut, faces_between
@@ -239,6 +237,9 @@ class Trim:
 
     def _connected(self, active: Mask) -> Mask:
         """Those of the active elements that hang together with most of them."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
         f = self._faces.part(active[self._faces.first] & active[self._faces.second])
         count = len(active)
         graph = coo_array((np.ones(len(f.first)), (f.first, f.second)), (count, count))

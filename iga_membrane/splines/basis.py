@@ -68,10 +68,11 @@ class Basis:
         return np.diff(self.breaks)
 
     @cached_property
-    def alike(self) -> bool:
-        """Whether all elements have the same functions."""
-        rounding = 1e-9 * self.sizes[0]
-        return bool((self.operators == self.operators[0]).all() and np.ptp(self.sizes) <= rounding)
+    def kinds(self) -> Index:
+        """(m,) number of the set of functions that each element has."""
+        sizes = self.sizes[:, None] / self.sizes[0]
+        own = np.hstack([sizes, self.operators.reshape(self.elements, -1)])
+        return np.asarray(np.unique(np.round(own, 12) + 0.0, axis=0, return_inverse=True)[1])
 
     def on_elements(self, u: Array, derivative: int = 0) -> Array:
         """Values at the same local points of every element: (m, len(u), p + 1)."""

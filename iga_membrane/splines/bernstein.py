@@ -27,10 +27,15 @@ def bernstein(u: Array, degree: int, derivative: int = 0) -> Array:
         padded = np.zeros((*np.shape(u), degree + 2))
         padded[..., 1:-1] = lower
         return np.asarray(degree * (padded[..., :-1] - padded[..., 1:]))
-    u = np.asarray(u, float)[..., None]
-    j = np.arange(degree + 1)
-    binomial = np.array([comb(degree, k) for k in range(degree + 1)], float)
-    return np.asarray(binomial * u**j * (1.0 - u) ** (degree - j))
+    u = np.asarray(u, float)
+    result = np.empty((*u.shape, degree + 1))
+    rising, falling = [np.ones_like(u)], [np.ones_like(u)]
+    for _ in range(degree):
+        rising.append(rising[-1] * u)
+        falling.append(falling[-1] * (1.0 - u))
+    for k in range(degree + 1):
+        result[..., k] = comb(degree, k) * rising[k] * falling[degree - k]
+    return result
 
 
 def extraction(windows: Array, degree: int) -> Array:

@@ -95,7 +95,8 @@ class Space:
         e1, e2 = np.divmod(chosen, self.bases[1].elements)
         orders = 2 if second else 1
         # elements that are all alike share one table
-        own = slice(1) if self._alike else slice(None)
+        kinds = self._kinds(e1, e2)
+        own = slice(None) if kinds.any() else slice(1)
         one = [self.bases[0].on_elements(u, k)[e1[own]] for k in range(orders + 1)]
         two = [self.bases[1].on_elements(v, k)[e2[own]] for k in range(orders + 1)]
         rows: Rows = {}
@@ -117,6 +118,7 @@ class Space:
             np.multiply.outer(h1 * h2, np.outer(wu, wv).ravel()),
             start[:, None] + size[:, None] * local,
             np.stack([rows[2, 0], rows[1, 1], rows[0, 2]]) if second else None,
+            kinds,
         )
 
     def at(self, xi: ArrayLike, orders: int = 2) -> tuple[Index, Rows]:
@@ -195,11 +197,15 @@ class Space:
         alive = np.abs(table.values).max(axis=1) > 1e-14
         return np.unique(table.functions[alive])
 
-    @property
-    def _alike(self) -> bool:
-        """Whether all elements have the same functions."""
-        plain = self.weights is None and not len(self.near)
-        return plain and all(basis.alike for basis in self.bases)
+    def _kinds(self, e1: Index, e2: Index) -> Index:
+        """Number of the set of functions that each element (e1, e2) has, from 0 on."""
+        if self.weights is not None:
+            return np.arange(len(e1))
+        one, two = (basis.kinds for basis in self.bases)
+        kinds = one[e1] * (two.max() + 1) + two[e2]
+        pole = np.isin(e1 * self.bases[1].elements + e2, self.near)
+        kinds[pole] = kinds.max(initial=0) + 1 + np.arange(pole.sum())
+        return np.asarray(np.unique(kinds, return_inverse=True)[1])
 
     @cached_property
     def abscissae(self) -> Array:

@@ -23,6 +23,7 @@ class Table:
     weights : (elements, points) quadrature weights in the parameter domain.
     parameters : (elements, points, 2) the points themselves.
     second : (3, elements, points, local) second derivatives 11, 12, 22, or None.
+    kinds : (elements,) a number that elements with the same rows share, or None if not known.
     """
 
     functions: Index
@@ -32,6 +33,20 @@ class Table:
     weights: Array
     parameters: Array
     second: Array | None = None
+    kinds: Index | None = None
+
+    @cached_property
+    def alike(self) -> list[Index]:
+        """Elements (kinds, n) with the same rows along the second axis, by how many there are."""
+        if self.kinds is None:
+            return [np.arange(len(self.functions))[:, None]]
+        counts = np.bincount(self.kinds)
+        sorted_ = np.argsort(self.kinds, kind="stable")
+        first = np.cumsum(counts) - counts
+        return [
+            sorted_[first[counts == n][:, None] + np.arange(n)]
+            for n in np.unique(counts[counts > 0]).tolist()
+        ]
 
     @cached_property
     def stacked(self) -> Array:
@@ -42,9 +57,10 @@ class Table:
 
     def part(self, elements: slice | Index) -> Table:
         """First-order table of some of the elements."""
-        plain = (getattr(self, name)[elements] for name in ("weights", "parameters"))
-        rows = (_some(row, elements) for row in (self.values, self.d1, self.d2))
-        return Table(self.functions[elements], *rows, *plain)
+        values, d1, d2 = (_some(row, elements) for row in (self.values, self.d1, self.d2))
+        weights, parameters = self.weights[elements], self.parameters[elements]
+        kinds = None if self.kinds is None else self.kinds[elements]
+        return Table(self.functions[elements], values, d1, d2, weights, parameters, kinds=kinds)
 
     def with_columns(self, columns: Index, functions: Index) -> Table:
         """Some local functions once more, under other numbers (elements, len(columns))."""

@@ -21,8 +21,8 @@ def bezier_net(surface: Surface, elements: Index | None = None) -> Array:
     chosen = np.arange(space.elements) if elements is None else elements
     e1, e2 = np.divmod(chosen, two.elements)
     local = homogeneous[one.functions[e1][:, :, None], two.functions[e2][:, None, :]]
-    size = local.shape[2] * local.shape[3]
-    rows = one.operators[e1].transpose(0, 2, 1) @ local.reshape(*local.shape[:2], size)
+    flat = local.reshape(*local.shape[:2], 4 * local.shape[2])
+    rows = one.operators[e1].transpose(0, 2, 1) @ flat
     cells = two.operators[e2].transpose(0, 2, 1)[:, None] @ rows.reshape(local.shape)
     return np.asarray(cells)
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..splines import net_of
-from .motion import Motion, Spines, _points_of_field
+from .motion import Motion, Spines, _points_of_field, along_net
 from .supports import Sector, Sliding, Support
 from .surface import Surface
 
@@ -67,9 +67,7 @@ class Cartesian(Spines):
         normals = super().on(surface).directions[: self.space.count]
         v1, _, _, d2 = self._derivative_matrices
         net: Any = net_of(self.space, surface.points)
-        along = _points_of_field(
-            self.space, np.einsum("ab,jk,bkc->ajc", v1, d2, net, optimize=True)
-        )
+        along = _points_of_field(self.space, along_net(v1, d2, net))
         along = along - np.einsum("ki,ki->k", along, normals)[:, None] * normals
         length = np.linalg.norm(along, axis=1, keepdims=True)
         along = along / np.where(length > 0, length, 1.0)

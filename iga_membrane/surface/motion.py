@@ -174,6 +174,14 @@ class Spines:
     def _motion(self, rows: Array) -> Motion:
         return Motion(self.points, rows, self.unknowns, self.size, self.shifts, self.share)
 
+    @cached_property
+    def places(self) -> Array:
+        """(n, 3) where the first control point of each unknown starts; 0 for shifts."""
+        places = np.zeros((self.size + 1, 3))
+        own = len(self.points) - len(self.shifts)
+        places[self.unknowns[:own][::-1]] = self._start[self.points[:own][::-1]]
+        return places[:-1]
+
     def lag(self, surface: Surface) -> Array:
         """(3,) way by which the top, which takes part in shifts, is ahead of the foot."""
         if not len(self.shifts):
@@ -217,8 +225,7 @@ class Spines:
         v1, d1, v2, d2 = self._derivative_matrices
         net, weights = net_of(surface.space, surface.points), surface.space.weights
         if weights is None:
-            a1 = np.einsum("ab,bjc->ajc", d1, np.einsum("jk,bkc->bjc", v2, net))
-            a2 = np.einsum("ab,bjc->ajc", v1, np.einsum("jk,bkc->bjc", d2, net))
+            a1, a2 = along_net(d1, v2, net), along_net(v1, d2, net)
         else:
             k = surface.at(surface.space.abscissae, 1)
             a1, a2 = k.tangents[..., 0, :], k.tangents[..., 1, :]
@@ -269,6 +276,11 @@ def _numbered(owner: Index, fixed: NDArray[np.bool_]) -> Index:
     leaders = np.unique(owner[~fixed])
     numbers = np.searchsorted(leaders, owner)
     return np.where(fixed, -1, numbers)
+
+
+def along_net(one: Array, two: Array, net: Array) -> Array:
+    """(a, b, 3) a net (n1, n2, 3) times one matrix (a, n1) and the other (b, n2)."""
+    return np.tensordot(one, two @ net, axes=1)
 
 
 def _points_of_field(space: Space, net: Array) -> Array:

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..checks import number
 from ..splines import Table
+from .pairs import COMPONENTS, Form, components
 from .term import Scale, Term
 from .variations import ElementPoints
 
@@ -55,6 +56,11 @@ class PreviousMetric:
     inverse: tuple[Array, Array, Array]
     area: Array
 
+    def part(self, elements: Index) -> PreviousMetric:
+        """Some of the elements."""
+        one, mixed, two = (component[elements] for component in self.inverse)
+        return PreviousMetric((one, mixed, two), self.area[elements])
+
     @classmethod
     def of(cls, table: Table, at: ElementPoints) -> PreviousMetric:
         """The metric of a state."""
@@ -76,30 +82,31 @@ def forces(mu: float, table: Table, before: PreviousMetric, at: ElementPoints) -
     s11, s12, s22 = _stress(mu, before, at)
     f1 = s11[..., None] * at.a1 + s12[..., None] * at.a2
     f2 = s12[..., None] * at.a1 + s22[..., None] * at.a2
-    return np.asarray(table.d1.transpose(0, 2, 1) @ f1 + table.d2.transpose(0, 2, 1) @ f2)
+    slopes = table.stacked[:, table.weights.shape[1] :]
+    return np.asarray(slopes.transpose(0, 2, 1) @ np.concatenate([f1, f2], axis=1))
 
 
-def hessian(
-    mu: float, table: Table, before: PreviousMetric, at: ElementPoints, directions: Array
-) -> Array:
-    """(elements, local, local) second derivative along directions (elements, local, 3)."""
-    s11, s12, s22 = (s[..., None] for s in _stress(mu, before, at))
-    d1, d2 = table.d1, table.d2
-    along = directions.transpose(0, 2, 1)
-    geometric = d1.transpose(0, 2, 1) @ (s11 * d1 + s12 * d2)
-    geometric = geometric + d2.transpose(0, 2, 1) @ (s12 * d1 + s22 * d2)
-    # variations of a_11, a_12, a_22 along each direction
-    one, two = at.a1 @ along, at.a2 @ along
-    e11, e12, e22 = 2.0 * d1 * one, d1 * two + d2 * one, 2.0 * d2 * two
-    g11, g12, g22 = (g[..., None] for g in _inverse(at))
-    w = (0.5 * mu * before.area)[..., None]
-    # mu / 2 tr(a^-1 e a^-1 e')
-    r11 = w * (g11**2 * e11 + 2.0 * g11 * g12 * e12 + g12**2 * e22)
-    r12 = w * 2.0 * (g11 * g12 * e11 + (g11 * g22 + g12**2) * e12 + g12 * g22 * e22)
-    r22 = w * (g12**2 * e11 + 2.0 * g12 * g22 * e12 + g22**2 * e22)
-    rows = np.concatenate([e11, e12, e22], axis=1).transpose(0, 2, 1)
-    material = rows @ np.concatenate([r11, r12, r22], axis=1)
-    return np.asarray(material + geometric * (directions @ along))
+def form(mu: float, before: PreviousMetric, at: ElementPoints) -> Form:
+    """Second variation at quadrature points.
+
+    Notes
+    -----
+    ``mu dA_pre [A^ab 1 - a^ab n (x) n + a^b (x) a^a]`` between ``u_,a`` and ``u'_,b``, with the
+    dual tangents ``a^a``.
+    """
+    inverse = _inverse(at)
+    normal, a1, a2 = components(at.c) / at.area, components(at.a1), components(at.a2)
+    duals = inverse[0] * a1 + inverse[1] * a2, inverse[1] * a1 + inverse[2] * a2
+    scale = mu * before.area
+    symmetric = np.empty((6, len(scale), 3, scale.shape[1]))
+    for row, (one, two) in enumerate(((0, 0), (0, 1), (1, 1))):
+        for k, (i, j) in enumerate(COMPONENTS):
+            both = 0.5 * (duals[one][i] * duals[two][j] + duals[one][j] * duals[two][i])
+            both -= inverse[row] * normal[i] * normal[j]
+            both += before.inverse[row] * (i == j)
+            np.multiply(scale, both, out=symmetric[k, :, row])
+    skew = -0.5 * scale / at.area * normal
+    return Form(symmetric, skew[:, :, None])
 
 
 def _stress(mu: float, before: PreviousMetric, at: ElementPoints) -> tuple[Array, ...]:

@@ -121,3 +121,12 @@ def test_ties_vanish_on_polynomials():
     assert len(ties.across[0]) > 0
     assert np.abs(ties.forces(flat)[..., 2]).max() < 1e-14
     assert np.abs(ties.forces(surface.points)[..., 2]).max() > 1e-6
+
+
+def test_a_trial_far_from_all_solids_has_an_energy():
+    scene = cell(shape="circle", elements=8)
+    assembly, surface = Assembly(scene), scene.local_surface()
+    up = 20.0 * surface.size * np.array([0.0, 0.0, 1.0])
+    assembly.trim.begin()
+    away = assembly.energies(surface.moved(surface.points + up))
+    assert np.isfinite(away.total)
