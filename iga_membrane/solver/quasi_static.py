@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..scenes.scene import Scene
+from ..scenes.scene import Ramp, Scene
 from ..terms import Stabilization
 from .assembly import Assembly
 from .load_stepping import LoadStep
@@ -40,7 +40,7 @@ def quasi_static(
 
     At a fixed load every step takes over the metric of the last one and half its stabilization, so
     the stress of eq. (23) fades until it holds only what the discrete membrane cannot balance in
-    its plane.
+    its plane. Where such a step fails, they begin again and fade less, at last not at all.
 
     Returns
     -------
@@ -67,25 +67,48 @@ def quasi_static(
             return tried, steps
         else:
             wanted.insert(0, 0.5 * (load + reached))
-    for k in range(RELAXATIONS):
-        tried = _step(ramp(1.0), assembly, result, result, options, relaxing=k + 1)
+    given, weakest = _stabilization(ramp(1.0)).mu, FADED * assembly.tension
+    while True:
+        relaxed, mu, crept = _relax(ramp, assembly, result, options, weakest, steps)
+        if relaxed.status in (None, Status.INTERRUPTED) or mu >= given:
+            break
+        weakest = min(mu / FADING, given)
+    if relaxed.status is not None:
+        return relaxed, steps
+    if crept > CREPT:
+        relaxed.status = Status.STALLED
+        relaxed.message = (
+            f"the stabilization has not relaxed in {RELAXATIONS} steps at the last load (the last "
+            f"one moved the membrane by {crept:.1e} lengths): lower solver.stabilization"
+        )
+    weak = Stabilization(WEAK * assembly.tension, projected=True)
+    assembly.begin_step(relaxed.surface, weak)
+    return relaxed, steps
+
+
+def _relax(
+    ramp: Ramp,
+    assembly: Assembly,
+    result: NewtonResult,
+    options: NewtonOptions,
+    weakest: float,
+    steps: list[LoadStep],
+) -> tuple[NewtonResult, float, float]:
+    """Steps at the last load: the last one, its stabilization, how far it moved the membrane."""
+    mu, crept = _stabilization(ramp(1.0)).mu, np.inf
+    for _ in range(RELAXATIONS):
+        mu = max(FADING * mu, weakest)
+        tried = _step(ramp(1.0), assembly, result, result, options, mu)
         steps.append(LoadStep(1.0, len(tried.iterations), tried.status, ramp.value(1.0)))
         if tried.status is not None:
-            return tried, steps
+            return tried, mu, np.inf
         moved = tried.surface.points - result.surface.points
         result = tried
         normals = assembly.spines.on(result.surface).directions[: len(moved)]
         crept = float(np.abs(np.einsum("ki,ki->k", moved, normals)).max())
         if crept <= RELAXED:
             break
-    if crept > CREPT:
-        result.status = Status.STALLED
-        result.message = (
-            f"the stabilization has not relaxed in {RELAXATIONS} steps at the last load (the last "
-            f"one moved the membrane by {crept:.1e} lengths): lower solver.stabilization"
-        )
-    assembly.begin_step(result.surface, Stabilization(WEAK * assembly.tension, projected=True))
-    return result, steps
+    return result, mu, crept
 
 
 def _step(
@@ -94,15 +117,17 @@ def _step(
     state: NewtonResult,
     before: NewtonResult | None,
     options: NewtonOptions,
-    relaxing: int = 0,
+    mu: float | None = None,
 ) -> NewtonResult:
-    """One load step, or one of those at the last load, by number."""
+    """One load step, or with a stabilization of its own one of those at the last load."""
     assembly.load(scene)
-    term = next(t for t in scene.local_terms() if isinstance(t, Stabilization))
-    if relaxing:
-        term = replace(term, mu=max(FADING**relaxing * term.mu, FADED * assembly.tension))
-    assembly.begin_step(state.surface, term)
+    term = _stabilization(scene)
+    assembly.begin_step(state.surface, term if mu is None else replace(term, mu=mu))
     multipliers = None if before is None else before.multipliers
     result = newton(assembly, state.surface, multipliers, None, options)
     result.linear_seconds += state.linear_seconds
     return result
+
+
+def _stabilization(scene: Scene) -> Stabilization:
+    return next(t for t in scene.local_terms() if isinstance(t, Stabilization))

@@ -89,6 +89,18 @@ def test_a_strong_stabilization_fades():
     assert energies[1] == pytest.approx(energies[0], rel=1e-6)
 
 
+@pytest.mark.slow
+def test_where_fading_fails_the_stabilization_fades_less():
+    hard = iga.WholeMembrane(penalty=1e6)
+    found = iga.solve(sheet(120.0, membrane=hard, elements=18))
+    assert found.measures["phi_deg"] == pytest.approx(
+        iga.solve(sheet(120.0)).measures["phi_deg"], rel=1e-4
+    )
+    soft = iga.WholeMembrane(penalty=1e2)
+    found = iga.solve(sheet(150.0, membrane=soft, elements=18), on_fail="return")
+    assert found.status is iga.Status.PENETRATION
+
+
 def test_a_stabilization_that_has_not_relaxed_is_named(monkeypatch):
     monkeypatch.setattr("iga_membrane.solver.quasi_static.RELAXATIONS", 3)
     membrane = iga.WholeMembrane(stabilization=100.0, load_steps=2)
