@@ -8,14 +8,12 @@ import os
 import queue
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-"""What libraries read when they are loaded."""
-
+from .threads import children_on_one_thread
 
 STARTING = 120.0
 """Seconds within which a worker must have started."""
@@ -43,7 +41,7 @@ class ProcessLanes(Executor):
     """
 
     def __init__(self, workers: int | None = None, timeout: float | None = None) -> None:
-        count = workers or len(os.sched_getaffinity(0))
+        count = workers or processors()
         self._timeout = timeout
         self._threads = ThreadPoolExecutor(count)
         self._lanes: queue.SimpleQueue[_Lane] = queue.SimpleQueue()
@@ -70,6 +68,11 @@ class ProcessLanes(Executor):
         self._threads.shutdown(wait, cancel_futures=cancel_futures)
         for lane in self._all:
             lane.end()
+
+
+def processors() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0))
 
 
 class _Lane:
@@ -103,7 +106,7 @@ class _Lane:
             raise WorkerLostError("the sweep was stopped")
         method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else None
         context = multiprocessing.get_context(method)
-        with _one_thread():
+        with children_on_one_thread():
             self._pool = ProcessPoolExecutor(1, context, _prepare)
             try:
                 self._pid = self._pool.submit(os.getpid).result(STARTING)
@@ -116,22 +119,6 @@ class _Lane:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(self._pid, signal.SIGKILL)
             pool.shutdown(wait=False, cancel_futures=True)
-
-
-_ENVIRONMENT = threading.Lock()
-
-
-@contextlib.contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes started inside run their libraries on one thread, unless told otherwise."""
-    with _ENVIRONMENT:
-        added = [name for name in THREADS if name not in os.environ]
-        os.environ.update(dict.fromkeys(added, "1"))
-        try:
-            yield
-        finally:
-            for name in added:
-                del os.environ[name]
 
 
 def _prepare() -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import socket
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,17 @@ from ..records import digest
 Record = dict[str, Any]
 LARGEST_RECORD = 50_000_000
 """Bytes of a record at most."""
+LAPSE = 300.0
+"""Seconds after which a claim that nobody has renewed counts for nothing."""
 
 
 class RecordStore:
     """A folder of records, shared by any number of processes.
 
-    A point is claimed by a file that names host and process, made exclusively; the claim of a
-    process that is gone counts for nothing. A record is written beside and renamed, so that it is
-    whole or not there, and has a checksum.
+    A point is claimed by a file that names host and process, made exclusively. The claim of a
+    process of this host that is gone counts for nothing, nor does one, of any host, that was not
+    renewed for ``LAPSE``. A record is written beside and renamed, so that it is whole or not there,
+    and has a checksum.
 
     Parameters
     ----------
@@ -66,9 +70,9 @@ class RecordStore:
     def claim(self, key: str) -> bool:
         """Whether this process may compute a point."""
         path, mine = self._claim(key), self.folder / f".{key}.{os.getpid()}"
-        mine.write_text(_myself(), encoding="utf-8")
+        mine.write_text(this_process(), encoding="utf-8")
         try:
-            if _abandoned(path):
+            if _abandoned(path, mine.stat().st_mtime):
                 # of those that see a dead claim one renames it away
                 os.rename(path, mine.with_suffix(".dead"))
                 mine.with_suffix(".dead").unlink()
@@ -78,6 +82,12 @@ class RecordStore:
         finally:
             mine.unlink()
         return True
+
+    def renew(self, keys: Iterable[str]) -> None:
+        """Say that this process still computes its points."""
+        for key in keys:
+            with contextlib.suppress(FileNotFoundError):
+                os.utime(self._claim(key))
 
     def release(self, key: str) -> None:
         """Let others compute a point."""
@@ -94,17 +104,19 @@ def _checksum(text: str) -> str:
     return "sha256 " + hashlib.sha256(text.encode()).hexdigest()
 
 
-def _myself() -> str:
+def this_process() -> str:
+    """Its host and number."""
     return f"{socket.gethostname()} {os.getpid()}"
 
 
-def _abandoned(path: Path) -> bool:
-    """Whether a claim was made on this host by a process that is gone."""
+def _abandoned(path: Path, now: float) -> bool:
+    """Whether the process that made a claim is gone, now by the clock of the folder."""
     try:
         host, _, pid = path.read_text(encoding="utf-8").partition(" ")
-        return host == socket.gethostname() and _gone(int(pid))
+        lapsed = now - path.stat().st_mtime > LAPSE
     except FileNotFoundError:
         return False
+    return lapsed or (host == socket.gethostname() and _gone(int(pid)))
 
 
 def _gone(pid: int) -> bool:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import itertools
 import logging
-import time
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import BrokenExecutor, Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.reduction import ForkingPickler
@@ -16,28 +14,24 @@ from typing import Any
 
 import numpy as np
 
-from .. import __version__
 from ..arrays import Array
 from ..checks import integer, number
 from ..checks import record as check_record
-from ..errors import GeometryError, OutputError, SceneError
+from ..errors import OutputError, SceneError
 from ..files import write_whole
 from ..progress import bar
-from ..records import digest
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
-from ..solver.result_file import flat, result
-from ..solver.solve import solve
+from ..solver.result_file import flat
 from ..tables import column, csv_text, dataframe, dataset, names_of
-from .lanes import ProcessLanes, WorkerStartError
+from .job import Job, fingerprint, question_of
+from .lanes import ProcessLanes, processors
 from .record_store import Record, RecordStore
 
 log = logging.getLogger("iga_membrane")
 
-TRIES = 3
-"""How often a point whose worker is lost is tried before it is recorded as failed."""
 IN_FLIGHT = 64
-"""Points handed to the executor at a time."""
+"""Points handed at a time to an executor whose number of workers is not said."""
 MOST = 1_000_000
 """Points of a sweep at most."""
 
@@ -144,9 +138,11 @@ def sweep(
     scene_of : parameters by name to a scene; for processes a function at the top level of a module.
     over : name to values; the grid is their product, the last name varying fastest.
     out : folder of the records; without it nothing is kept.
-    executor : any ``concurrent.futures.Executor``; by default processes that run their libraries
-        on one thread each.
-    workers, timeout : of the default executor: number of processes, and seconds per point.
+    executor : any ``concurrent.futures.Executor``, of Dask or MPI too; by default processes of this
+        machine. Other processes than this one run their libraries on one thread.
+    workers : number of processes of the default executor (the processors), or of workers that
+        another one has; twice as many points are claimed and handed out at a time (else 64).
+    timeout : seconds per point, of the default executor.
     options : of every solve.
     allow_mixed : whether records of other options, scenes or versions may stand beside new ones.
 
@@ -183,7 +179,7 @@ def sweep(
         if executor is None:
             _check_sendable(scene_of)
         with bar("sweep", len(points)) as report:
-            job = _Job(scene_of, left, found, store, options, report)
+            job = Job(scene_of, left, found, store, options, report, _in_flight(executor, workers))
             try:
                 with _running(executor, workers, timeout) as pool:
                     job.run(pool)
@@ -218,15 +214,6 @@ def _grid(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     return points
 
 
-def _question(options: SolverOptions) -> str:
-    return digest([__version__, options.numerical()])
-
-
-def _fingerprint(scene: Scene) -> str:
-    """Of a scene by its words and terms; a scene without words also by its start."""
-    return digest([scene.description or scene.surface, scene.terms])
-
-
 def _check_mixed(
     scene_of: Callable[..., Scene],
     found: Mapping[str, Record],
@@ -235,17 +222,24 @@ def _check_mixed(
 ) -> bool:
     """Whether records answer another question: other options, version, or (the first and the last
     of them are built to see) another scene."""
-    question = _question(options)
+    question = question_of(options)
     other = any(kept.get("question") != question for kept in found.values())
     solved = [kept for kept in found.values() if "result" in kept]
     for kept in solved[:1] + solved[1:][-1:]:
-        other = other or kept.get("scene") != _fingerprint(scene_of(**kept["parameters"]))
+        other = other or kept.get("scene") != fingerprint(scene_of(**kept["parameters"]))
     if other and not allowed:
         raise SceneError(
             f"out: {len(found)} records there, some of other options, scenes or another version "
             "than this sweep's; choose another folder, or allow_mixed=True"
         )
     return other
+
+
+def _in_flight(executor: Executor | None, workers: int | None) -> int:
+    """Enough points to keep all workers busy, and few, since no other process gets them."""
+    if executor is not None and workers is None:
+        return IN_FLIGHT
+    return 2 * (workers or processors())
 
 
 def _check_sendable(scene_of: Callable[..., Scene]) -> None:
@@ -271,115 +265,6 @@ def _running(
         yield own
     finally:
         own.shutdown(cancel_futures=True)
-
-
-class _Job:
-    """What is left of a sweep; fills ``found``, and ``computed`` with what it did itself."""
-
-    def __init__(
-        self,
-        scene_of: Callable[..., Scene],
-        left: Mapping[str, dict[str, Any]],
-        found: dict[str, Record],
-        store: RecordStore | None,
-        options: SolverOptions,
-        report: Callable[[float], None],
-    ) -> None:
-        self._scene_of, self._left, self._found = scene_of, left, found
-        self._store, self._options, self._report = store, options, report
-        self._tries = dict.fromkeys(left, 0)
-        self.computed: set[str] = set()
-
-    def run(self, pool: Executor) -> None:
-        """Compute what is left, or wait for the processes that do.
-
-        Raises
-        ------
-        BrokenExecutor
-            If the executor takes no more calls.
-        """
-        waiting = deque(key for key in self._left if key not in self._found)
-        running: dict[Future[Record], str] = {}
-        try:
-            while waiting or running:
-                for _ in range(len(waiting)):
-                    if len(running) >= IN_FLIGHT:
-                        break
-                    key = waiting.popleft()
-                    if not self._free(key):
-                        if key not in self._found:
-                            waiting.append(key)
-                        continue
-                    point = self._left[key]
-                    running[pool.submit(solve_point, self._scene_of, point, self._options)] = key
-                if not running:
-                    time.sleep(0.2)  # other processes compute what is left
-                    continue
-                for done in wait(running, timeout=1.0, return_when=FIRST_COMPLETED).done:
-                    key = running[done]
-                    if not self._finish(key, done):
-                        waiting.append(key)
-                    del running[done]
-                self._report(len(self._found))
-        finally:
-            for key in running.values():
-                self._release(key)
-
-    def _free(self, key: str) -> bool:
-        """Claim a point, unless another process has it or has finished it."""
-        if self._store is None:
-            return True
-        if not self._store.claim(key):
-            return False
-        kept = self._store.read(key)
-        if kept is not None:
-            self._found[key] = kept
-            self._store.release(key)
-        return kept is None
-
-    def _release(self, key: str) -> None:
-        if self._store is not None:
-            self._store.release(key)
-
-    def _finish(self, key: str, done: Future[Record]) -> bool:
-        """Keep the record of a call; False if the point is to be tried again."""
-        point = self._left[key]
-        try:
-            record = done.result()
-        except BrokenExecutor:
-            raise
-        except WorkerStartError as error:
-            raise SceneError(
-                f"executor: {error}; call sweep under ``if __name__ == '__main__':``, or give "
-                "executor=ThreadPoolExecutor()"
-            ) from error
-        except Exception as error:
-            self._tries[key] += 1
-            reason = f"{type(error).__name__}: {error}"
-            log.warning("%s: %s (try %d of %d)", point, reason, self._tries[key], TRIES)
-            if self._tries[key] < TRIES:
-                self._release(key)
-                return False
-            record = {"parameters": point, "question": _question(self._options), "error": reason}
-        if self._store is not None:
-            self._store.write(key, record)
-        self._found[key] = record
-        self.computed.add(key)
-        return True
-
-
-def solve_point(
-    scene_of: Callable[..., Scene], point: dict[str, Any], options: SolverOptions
-) -> Record:
-    """One point, in a worker: its result, or why there is none."""
-    record: Record = {"parameters": point, "question": _question(options)}
-    try:
-        scene = scene_of(**point)
-        record["scene"] = _fingerprint(scene)
-        record["result"] = result(solve(scene, options, on_fail="return"))
-    except (SceneError, GeometryError) as error:
-        record["error"] = f"{type(error).__name__}: {error}"
-    return record
 
 
 def _status(record: Record) -> str:

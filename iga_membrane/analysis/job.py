@@ -1,0 +1,154 @@
+"""The points that are left of a sweep, handed to an executor; each of them is kept when it ends."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from typing import Any
+
+from .. import __version__
+from ..errors import GeometryError, SceneError
+from ..records import digest
+from ..scenes.scene import Scene
+from ..solver.options import SolverOptions
+from ..solver.result_file import result
+from ..solver.solve import solve
+from .lanes import WorkerStartError
+from .record_store import LAPSE, Record, RecordStore, this_process
+from .threads import stay_on_one_thread
+
+log = logging.getLogger("iga_membrane")
+
+TRIES = 3
+"""How often a point whose worker is lost is tried before it is recorded as failed."""
+
+
+def question_of(options: SolverOptions) -> str:
+    return digest([__version__, options.numerical()])
+
+
+def fingerprint(scene: Scene) -> str:
+    """Of a scene by its words and terms; a scene without words also by its start."""
+    return digest([scene.description or scene.surface, scene.terms])
+
+
+class Job:
+    """What is left of a sweep; fills ``found``, and ``computed`` with what it did itself."""
+
+    def __init__(
+        self,
+        scene_of: Callable[..., Scene],
+        left: Mapping[str, dict[str, Any]],
+        found: dict[str, Record],
+        store: RecordStore | None,
+        options: SolverOptions,
+        report: Callable[[float], None],
+        in_flight: int,
+    ) -> None:
+        self._scene_of, self._left, self._found = scene_of, left, found
+        self._store, self._options, self._report = store, options, report
+        self._in_flight, self._renewed = in_flight, time.monotonic()
+        self._tries = dict.fromkeys(left, 0)
+        self.computed: set[str] = set()
+
+    def run(self, pool: Executor) -> None:
+        """Compute what is left, or wait for the processes that do.
+
+        Raises
+        ------
+        BrokenExecutor
+            If the executor takes no more calls.
+        """
+        waiting = deque(key for key in self._left if key not in self._found)
+        running: dict[Future[Record], str] = {}
+        try:
+            while waiting or running:
+                for _ in range(len(waiting)):
+                    if len(running) >= self._in_flight:
+                        break
+                    key = waiting.popleft()
+                    if not self._free(key):
+                        if key not in self._found:
+                            waiting.append(key)
+                        continue
+                    arguments = self._scene_of, self._left[key], self._options, this_process()
+                    running[pool.submit(solve_point, *arguments)] = key
+                if not running:
+                    time.sleep(0.2)  # other processes compute what is left
+                    continue
+                for done in wait(running, timeout=1.0, return_when=FIRST_COMPLETED).done:
+                    key = running[done]
+                    if not self._finish(key, done):
+                        waiting.append(key)
+                    del running[done]
+                self._renew(running.values())
+                self._report(len(self._found))
+        finally:
+            for key in running.values():
+                self._release(key)
+
+    def _free(self, key: str) -> bool:
+        """Claim a point, unless another process has it or has finished it."""
+        if self._store is None:
+            return True
+        if not self._store.claim(key):
+            return False
+        kept = self._store.read(key)
+        if kept is not None:
+            self._found[key] = kept
+            self._store.release(key)
+        return kept is None
+
+    def _renew(self, keys: Iterable[str]) -> None:
+        if self._store is not None and time.monotonic() - self._renewed > 0.1 * LAPSE:
+            self._store.renew(keys)
+            self._renewed = time.monotonic()
+
+    def _release(self, key: str) -> None:
+        if self._store is not None:
+            self._store.release(key)
+
+    def _finish(self, key: str, done: Future[Record]) -> bool:
+        """Keep the record of a call; False if the point is to be tried again."""
+        point = self._left[key]
+        try:
+            record = done.result()
+        except BrokenExecutor:
+            raise
+        except WorkerStartError as error:
+            raise SceneError(
+                f"executor: {error}; call sweep under ``if __name__ == '__main__':``, or give "
+                "executor=ThreadPoolExecutor()"
+            ) from error
+        except Exception as error:
+            self._tries[key] += 1
+            reason = f"{type(error).__name__}: {error}"
+            log.warning("%s: %s (try %d of %d)", point, reason, self._tries[key], TRIES)
+            if self._tries[key] < TRIES:
+                self._release(key)
+                return False
+            record = {"parameters": point, "question": question_of(self._options), "error": reason}
+        if self._store is not None:
+            self._store.write(key, record)
+        self._found[key] = record
+        self.computed.add(key)
+        return True
+
+
+def solve_point(
+    scene_of: Callable[..., Scene], point: dict[str, Any], options: SolverOptions, caller: str
+) -> Record:
+    """One point, in a worker of a caller: its result, or why there is none."""
+    if this_process() != caller:
+        stay_on_one_thread()
+    record: Record = {"parameters": point, "question": question_of(options)}
+    try:
+        scene = scene_of(**point)
+        record["scene"] = fingerprint(scene)
+        record["result"] = result(solve(scene, options, on_fail="return"))
+    except (SceneError, GeometryError) as error:
+        record["error"] = f"{type(error).__name__}: {error}"
+    return record
