@@ -19,7 +19,7 @@ from analysis.sweep_scenes import Counting, Deadly, drop, hanging, threads
 from helpers import droplet_file
 
 import iga_membrane as iga
-from iga_membrane.analysis.record_store import RecordStore
+from iga_membrane.analysis.record_store import LAPSE, RecordStore
 from iga_membrane.cli import main
 
 HERE = Path(__file__).parent
@@ -211,6 +211,12 @@ def test_a_claim_of_a_process_that_is_gone_counts_for_nothing(tmp_path):
     assert store.claim(key)
     (tmp_path / f".{key}.claim").write_text("another-host 1")
     assert not store.claim(key)
+    long_ago = time.time() - 2.0 * LAPSE
+    os.utime(tmp_path / f".{key}.claim", (long_ago, long_ago))
+    store.renew([key])
+    assert not store.claim(key)
+    os.utime(tmp_path / f".{key}.claim", (long_ago, long_ago))
+    assert store.claim(key)
 
 
 def started(where, pause, points, workers, **options):
