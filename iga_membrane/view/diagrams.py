@@ -93,6 +93,7 @@ def plot_phases(
     y: str,
     of: str,
     names: tuple[str, str] = ("no", "yes"),
+    curve: tuple[str, Array, Array] | None = None,
 ) -> None:
     """Draw where over two parameters a column is positive.
 
@@ -105,6 +106,8 @@ def plot_phases(
         number is interpolated between the points, which are marked; a truth value is that of the
         nearest one.
     names : of the phases where it is not positive and where it is.
+    curve : name, values of x and values of y of a line drawn over them, such as a boundary that
+        ``critical_value`` has found.
 
     Notes
     -----
@@ -142,9 +145,11 @@ def plot_phases(
         axes.contour(xs, ys, known, [0.0], colors="black", linewidths=1.2)
     solved = np.isfinite(values)
     axes.plot(across[solved], up[solved], ".", ms=2, color="0.45")
-    axes.set(xlabel=_label(x), ylabel=_label(y))
-    patches = [Patch(color=c, label=n) for c, n in zip(colours, names, strict=True)]
-    axes.legend(handles=patches, loc="upper right", fontsize=8)
+    axes.set(xlabel=_label(x), ylabel=_label(y), xlim=axes.get_xlim(), ylim=axes.get_ylim())
+    key = [Patch(color=c, label=n) for c, n in zip(colours, names, strict=True)]
+    if curve is not None:
+        key += axes.plot(curve[1], curve[2], "--", color="C3", lw=1.5, label=curve[0])
+    axes.legend(handles=key, loc="upper right", fontsize=8)
     write_figure(made, path)
 
 

@@ -1,6 +1,7 @@
 """Every example runs and returns the physics it claims."""
 
 import importlib.util
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,17 @@ def test_figure11():
     assert example.critical_angle(0.1) == pytest.approx(144.05640220715, abs=1e-5)
     assert example.critical_angle(1.0, name="F_e_down") is None
     assert example.largest_bond(1.0) == pytest.approx(1.17, rel=2e-2)
+
+
+def test_self_cleaning_map():
+    example = load("self_cleaning_map")
+    with ThreadPoolExecutor(1) as executor:
+        found, critical = example.main((60.0, 120.0), (0.2, 0.6), executor=executor)
+    assert found.column("lifts").tolist() == [1.0, 1.0, 1.0, 0.0]
+    assert example.answer(120.0, 0.6) == "stays"
+    # a weightless sheet: the force falls linearly with the Bond number
+    force = found.column("F_e_z").reshape(2, 2)
+    assert critical == pytest.approx(0.2 + 0.4 * force[:, 0] / (force[:, 0] - force[:, 1]))
 
 
 def test_droplet_on_asperities():

@@ -132,6 +132,21 @@ def test_phases_take_their_parts_of_the_diagram(tmp_path, of):
     assert part == pytest.approx(exact, abs=0.02)
 
 
+def test_a_boundary_is_drawn_over_phases_and_does_not_widen_them(tmp_path):
+    ends = np.array([0.0, 180.0])
+    curve = ("boundary", ends, 1.0 - ends / 180.0)
+    seen = []
+    for name, drawn in (("with", curve), ("without", None)):
+        picture = tmp_path / f"{name}.png"
+        iga.plot_phases(Grid(), picture, x="angle", y="bond", of="lifts", curve=drawn)
+        red, green, blue = np.moveaxis(shown(picture), -1, 0)
+        seen.append([(red - blue > 0.4).sum(), (blue - green > 0.1).sum()])
+    (line, lifted), (no_line, lifted_without) = seen
+    assert no_line == 0
+    assert line > 500
+    assert lifted == pytest.approx(lifted_without, rel=0.05)
+
+
 def test_curves_have_a_colour_for_each_value(tmp_path):
     iga.plot_curves(Grid(), tmp_path / "curves.svg", x="angle", y="F_e_z", by="bond")
     text = (tmp_path / "curves.svg").read_text()
