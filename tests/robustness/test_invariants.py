@@ -11,7 +11,8 @@ from helpers import droplet, worst
 from robustness.extreme_scenes import KINDS, extreme_scenes, score
 
 import iga_membrane as iga
-from iga_membrane.analysis.sweep import solve_point
+from iga_membrane.analysis.job import solve_point
+from iga_membrane.analysis.record_store import this_process
 from iga_membrane.reference import drop_on_plane
 from iga_membrane.splines import points_of
 
@@ -167,7 +168,7 @@ def outcomes(seed, count, kinds):
     for extreme in extreme_scenes(seed, count):
         if extreme.kind in kinds:
             options = iga.SolverOptions(max_cpu_s=120.0)
-            record = solve_point(lambda e=extreme: e.scene(), {}, options)
+            record = solve_point(lambda e=extreme: e.scene(), {}, options, this_process())
             yield extreme, record, *score(extreme, record)
 
 
