@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import choice, number, record, vector
 from ..errors import SceneError
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import (
@@ -45,7 +45,7 @@ HOLDS = ("none", "x", "xy", "xyz")
 
 
 def sessile_droplet(
-    substrate: Plane | Sphere | SphereLattice | Spheres,
+    substrate: Solid,
     *,
     volume: float,
     liquid: Liquid | None = None,
@@ -67,7 +67,8 @@ def sessile_droplet(
 
     Parameters
     ----------
-    substrate : the solid with its contact angle.
+    substrate : the solid with its contact angle: ``Plane``, ``Sphere``, ``SphereLattice``,
+        ``Spheres``, or any ``Solid`` of your own at 180 degrees.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
@@ -95,7 +96,7 @@ def sessile_droplet(
         have; a start below the substrate.
     """
     liquid, asked = with_defaults(liquid, discretization)
-    record("substrate", substrate, Plane, Sphere, SphereLattice, Spheres)
+    record("substrate", substrate, Solid)
     check_fixed(substrate)
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
@@ -260,7 +261,7 @@ def _acceleration(gravity: Any) -> Array:
 
 
 def _frame(
-    substrate: Plane | Sphere | SphereLattice | Spheres,
+    substrate: Solid,
 ) -> tuple[tuple[float, float, float], Array]:
     """Origin and axes of the scene: on the plane, or at the top of the sphere."""
     if isinstance(substrate, Plane):
@@ -271,9 +272,7 @@ def _frame(
     return (x, y, z + substrate.radius), np.eye(3)
 
 
-def _hints(
-    substrate: Plane | Sphere | SphereLattice | Spheres, bond: Array, sector: Sector
-) -> tuple[str, ...]:
+def _hints(substrate: Solid, bond: Array, sector: Sector) -> tuple[str, ...]:
     texts = []
     angle = float(np.min(substrate.contact_angle))
     if angle <= np.pi:
@@ -291,7 +290,7 @@ def _hints(
 
 
 def _describe(
-    substrate: Plane | Sphere | SphereLattice | Spheres,
+    substrate: Solid,
     volume: float,
     liquid: Liquid,
     acceleration: Array,
@@ -315,7 +314,7 @@ def _describe(
     }
 
 
-def _describe_substrate(substrate: Plane | Sphere | SphereLattice | Spheres) -> dict[str, Any]:
+def _describe_substrate(substrate: Solid) -> dict[str, Any]:
     match substrate:
         case Sphere():
             size: dict[str, Any] = {
@@ -348,3 +347,6 @@ def _describe_substrate(substrate: Plane | Sphere | SphereLattice | Spheres) -> 
                 "radii": np.asarray(substrate.radii).tolist(),
             }
             return spheres if substrate.base is None else spheres | {"base": substrate.base}
+        case _:
+            angle = np.asarray(substrate.contact_angle).tolist()
+            return {"kind": type(substrate).__name__, "contact_angle": angle}

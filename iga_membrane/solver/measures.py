@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Sphere, SphereLattice, Spheres
+from ..solids import Plane, Sphere, SphereLattice
 from ..surface.surface import Surface
 from ..terms import (
     BodyDensity,
@@ -145,7 +145,7 @@ def _on_solids(
     base = base_area(scene, found) + known / scale.length**2
     foot = float(np.sqrt(base / np.pi))
     angles = {}
-    if isinstance(scene.substrate, (SphereLattice, Spheres)) and base > 0:
+    if not isinstance(scene.substrate, (Plane, Sphere)) and base > 0:
         height = float(top[2])
         young = float(found.angles @ found.areas / found.areas.sum())
         angles = {
@@ -215,12 +215,12 @@ def _edge_heights(surface: Surface) -> tuple[float, float]:
 
 def base_area(scene: Scene, found: Footing) -> float:
     """Area of the foot (dimensionless): of the wet spheres' lattice cells, of the convex hull of
-    a list of spheres, of the wet spot on a single solid."""
+    the middles of other asperities, of the wet spot on a single solid."""
     solid = scene.units.local_solid(scene.substrate) if scene.substrate is not None else None
     on_sphere = found.which >= 0
     if isinstance(solid, SphereLattice):
         return float(on_sphere.sum() * solid.area_per_sphere)
-    if isinstance(solid, Spheres) and on_sphere.sum() >= 3:
+    if on_sphere.sum() >= 3:
         from scipy.spatial import ConvexHull
 
         return float(ConvexHull(found.centers[on_sphere, :2]).volume)
