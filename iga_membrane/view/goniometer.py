@@ -56,6 +56,11 @@ def plot_side(
     scene = solution.scene
     if scene.kind != "sessile_droplet":
         raise SceneError("plot_side: shows droplets on a substrate; take plot or plot_section")
+    if not isinstance(scene.substrate, (Plane, Sphere, SphereLattice, Spheres)):
+        raise SceneError(
+            f"plot_side: what a goniometer sees on {type(scene.substrate).__name__} is not known; "
+            "take plot or plot_section"
+        )
     rough = isinstance(scene.substrate, (SphereLattice, Spheres))
     if rough and scene.lateral_load:
         raise SceneError("plot_side: a leaning droplet on asperities has no apparent angle")

@@ -154,6 +154,7 @@ def _frame(
     substrate = solution.scene.substrate
     assert substrate is not None
     radius = float(substrate.radius_of(np.array(first["index"])))
+    radius = radius if np.isfinite(radius) else substrate.scale
     center = np.array(first["center"])
     top = center + 0.5 * radius * solution.scene.units.axes[:, 2]
     return top, 8.0 * radius, (center, 8.0 * radius)
