@@ -1,8 +1,8 @@
 """A substrate of one's own: a droplet on pillars with flat tops and rounded rims.
 
-A droplet of Bond number 1 lies at 180 degrees on a square lattice of round pillars, in a row of
-rounder and rounder rims. With a rim as wide as the pillar the tops are half spheres, and the droplet
-is that on the package's own spheres. Flatter tops carry the same weight on a larger wet area.
+A droplet of Bond number 1 lies at 180 degrees on a square lattice of round pillars. With a rim as
+wide as the pillar the tops are half spheres, and the droplet is that on the package's own spheres.
+Flatter tops carry the same weight on a larger wet area, and the droplet stands higher.
 
 A substrate answers five questions (:class:`iga_membrane.Solid`). The one that takes thought is the
 gap, with its gradient and the two principal curvatures of the surface of equal gap.
@@ -91,7 +91,7 @@ def droplet(solid: iga.Solid, elements: int | None = None) -> iga.Solution:
 
 
 def main(
-    rims: Sequence[float] = (0.1, 0.08, 0.06), radius: float = 0.1, elements: int | None = None
+    rims: Sequence[float] = (0.1, 0.08, 0.06), radius: float = 0.1, elements: int | None = 100
 ) -> list[dict[str, float]]:
     """Droplets on pillars with rounded rims."""
     rows = []

@@ -13,8 +13,9 @@ __version__ = "0.1.0"
 _HOME = {
     "errors": ("GeometryError", "OutputError", "SceneError", "SolveError", "StateError"),
     "units": ("si",),
-    "splines": ("Basis", "Grading", "Space", "Table", "bspline_basis", "close_pole", "lagrange_basis",
-                "line_basis", "open_knots", "periodic_basis", "ring_basis", "tensor_space"),
+    "splines": ("Basis", "Grading", "Space", "Table", "bspline_basis", "close_pole",
+                "lagrange_basis", "line_basis", "open_knots", "periodic_basis", "ring_basis",
+                "tensor_space"),
     "surface.surface": ("Surface",),
     "surface.kinematics": ("Kinematics",),
     "surface.shapes": ("cap", "cylinder", "disc", "sheet", "sphere"),

@@ -23,7 +23,7 @@ from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
 from .foot import adhesion
-from .liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
+from .liquid import MODELS, Discretization, Liquid, Mesh, space_name, with_defaults
 from .scene import Ramp, Scene
 from .start import gathered
 
@@ -81,6 +81,11 @@ def asperity_cell(
         )
     along = size / r * (1.0 if shape == "square" else 0.5)
     mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * along)))
+    if mesh.space != "bspline":
+        raise SceneError(
+            f'discretization.space = "{space_name(mesh.space)}": not available yet in a cell; '
+            '"bspline" is'
+        )
     smallest = smallest_model(sphere, size, (0.0, 0.0))
     model = mesh.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):

@@ -25,7 +25,7 @@ from ..terms import (
     TrimmedContactLine,
 )
 from .asperities import ball, smallest_model, whole_skin
-from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .liquid import MODELS, Discretization, Liquid, Mesh, Model, space_name
 from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
 
@@ -132,8 +132,8 @@ def _on_an_area(parts: Question) -> Foot:
     substrate, scale = parts.substrate, parts.scale
     if parts.asked.space != "bspline":
         raise SceneError(
-            f'discretization.space = "{parts.asked.space}": a membrane over its whole foot needs '
-            '"bspline"'
+            f'discretization.space = "{space_name(parts.asked.space)}": a membrane over its whole '
+            'foot needs "bspline"'
         )
     x, y, _ = (float(b) for b in parts.bond)
     tiny = 1e-14 * float(np.abs(parts.bond).max())

@@ -282,7 +282,7 @@ def _space(particle: Sphere | None, boundary: str, mesh: Mesh) -> Space:
         return ring_space(mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=corners)
     if boundary == "circle":
         return drop_space(mesh.space, mesh.degree, mesh.elements)
-    kind = "lagrange" if mesh.space == "lagrange" else "bspline"
+    kind = "bspline" if mesh.space == "nurbs" else mesh.space
     return flat_square(1.0, elements=mesh.elements, degree=mesh.degree, space=kind).space
 
 

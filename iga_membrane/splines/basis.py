@@ -7,7 +7,7 @@ live on which element, so everything above sees one class.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -220,14 +220,28 @@ def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) ->
     return Basis(degree, t, operators, functions, abscissae, 0, periodic)
 
 
-def line_basis(kind: str, elements: int, degree: int, joints: Sequence[int] = ()) -> Basis:
-    """Uniform basis on [0, 1].
+BasisOf = Callable[[int, int], Basis]
+"""A spline space of one's own: number of elements and degree to a basis on [0, 1]."""
+
+
+def line_basis(
+    kind: str | BasisOf, elements: int, degree: int, joints: Sequence[int] = ()
+) -> Basis:
+    """Basis on [0, 1].
 
     Parameters
     ----------
-    kind : "bspline" (of full smoothness) or "lagrange".
+    kind : "bspline" (of full smoothness) or "lagrange" on equal elements, or a function from the
+        number of elements and the degree to a basis.
     joints : inner elements at whose start splines have continuity 0.
+
+    Raises
+    ------
+    SceneError
+        If a function returns no basis on [0, 1], or has no place for joints.
     """
+    if callable(kind):
+        return _own_basis(kind, elements, degree, joints)
     breaks = np.linspace(0.0, 1.0, elements + 1)
     if kind == "lagrange":
         return lagrange_basis(breaks, degree)
@@ -236,6 +250,31 @@ def line_basis(kind: str, elements: int, degree: int, joints: Sequence[int] = ()
     kinks = tuple(float(breaks[j]) for j in joints)
     knots = np.sort(np.concatenate([open_knots(breaks, degree), np.repeat(kinks, degree - 1)]))
     return replace(bspline_basis(knots, degree, continuity=0), continuity=degree - 1, joints=kinks)
+
+
+def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int]) -> Basis:
+    """A basis of the user's, or an error that says what is wrong with it."""
+    name = getattr(kind, "__name__", type(kind).__name__)
+    if joints:
+        raise SceneError(f'discretization.space = {name}: has no joints; take "bspline" here')
+    basis = kind(elements, degree)
+    if not isinstance(basis, Basis):
+        raise SceneError(
+            f"discretization.space = {name}: {name}({elements}, {degree}) must return a Basis, got "
+            f"{type(basis).__name__}"
+        )
+    if basis.periodic or basis.breaks[0] != 0.0 or basis.breaks[-1] != 1.0:
+        raise SceneError(
+            f"discretization.space = {name}: its elements reach from {basis.breaks[0]:g} to "
+            f"{basis.breaks[-1]:g}, a meridian from 0 to 1 is needed"
+        )
+    ends = basis.matrix([0.0, 1.0])
+    if not (np.isclose(ends[0, 0], 1.0) and np.isclose(ends[1, -1], 1.0)):
+        raise SceneError(
+            f"discretization.space = {name}: its first and last function must be 1 at the ends, as "
+            "those of a clamped knot vector are"
+        )
+    return basis
 
 
 def ring_basis(

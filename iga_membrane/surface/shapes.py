@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..splines import (
     Basis,
+    BasisOf,
     bspline_basis,
     line_basis,
     open_knots,
@@ -82,12 +83,16 @@ def disc(radius: float) -> Surface:
     return revolution(basis, [[radius, 0.0], [0.0, 0.0]], np.ones(2))
 
 
-def sheet(size: float, *, elements: int = 8, degree: int = 3, space: str = "bspline") -> Surface:
+def sheet(
+    size: float, *, elements: int = 8, degree: int = 3, space: str | BasisOf = "bspline"
+) -> Surface:
     """Flat square sheet centred in z = 0, normal up, edges parallel to x and y.
 
     Parameters
     ----------
     size : edge length.
+    elements, degree : along both directions.
+    space : "bspline" or "lagrange", or a basis of your own (:func:`line_basis`).
     """
     basis = line_basis(space, elements, degree)
     product = tensor_space(basis, basis)
