@@ -6,7 +6,7 @@ import iga_membrane as iga
 
 
 def hanging_drop(volume, bond=1.0):
-    space = iga.drop_space("bspline", degree=4, elements=16)
+    space = iga.drop_space("bspline", degree=4, elements=10)
     bowl = iga.axisymmetric(space, lambda t: (1.0 - t, volume * t * (2.0 - t), -np.ones_like(t)))
     weight = iga.Gravity(bond, (0.0, 0.0, 1.0))  # the drop hangs along +z
     terms = [iga.SurfaceTension(1.0), iga.Volume(volume), weight]
