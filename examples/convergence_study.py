@@ -16,6 +16,4 @@ def main(elements=(4, 8, 16)):
 
 
 if __name__ == "__main__":
-    study = main()
-    print(study.table())
-    study.plot("convergence_study.png", measure="energy", against="unknowns")
+    main().plot("convergence_study.png", measure="energy", against="unknowns")

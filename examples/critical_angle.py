@@ -13,4 +13,5 @@ def main(low=90.0, high=170.0):
 
 
 if __name__ == "__main__":
-    print(main().value)  # degrees
+    angle = main().value  # 144.06 degrees
+    iga.solve(sheet(angle)).plot("critical_angle.png", color="none", traction=True)

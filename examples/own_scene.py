@@ -13,10 +13,9 @@ def hanging_drop(volume, bond=1.0):
     return iga.Scene(bowl, terms, [iga.Fixed("xi2=0"), iga.Sector("eighth")], kind="hanging_drop")
 
 
-def main(volumes=(0.5, 1.0, 2.0, 4.0, 8.0)):
+def main(volumes=(0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 8.0)):
     return iga.trace(hanging_drop, volumes, parameter="volume", on_fail="return")
 
 
 if __name__ == "__main__":
-    path = main()
-    print(path.values, path.end.status, path.bracket)
+    iga.plot_curves(main(), "own_scene.png", x="volume", y="pressure")

@@ -24,4 +24,4 @@ def main(elements=(4, 8, 16)):
 
 
 if __name__ == "__main__":
-    print(main().table())
+    main().plot("own_space.png", measure="energy", against="unknowns")

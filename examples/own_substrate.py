@@ -29,4 +29,4 @@ def main():
 
 
 if __name__ == "__main__":
-    print(main()[1])  # length across and along the ridges, height
+    main()[0].plot("own_substrate.png", color="pressure")

@@ -4,7 +4,7 @@ A droplet of Bond number 1 lies at 180 degrees on a square lattice of round pill
 wide as the pillar the tops are half spheres, and the droplet is that on the package's own spheres.
 Flatter tops carry the same weight on a larger wet area, and the droplet stands higher.
 
-A substrate answers five questions (:class:`iga_membrane.Solid`). The one that takes thought is the
+A substrate answers five questions (`iga_membrane.Solid`). The one that takes thought is the
 gap, with its gradient and the two principal curvatures of the surface of equal gap.
 
 ``python examples/pillars.py`` prints the numbers and draws ``pillars.png``.
