@@ -26,12 +26,13 @@ extensions = [
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["_build"]
+templates_path = ["_templates"]
 html_theme = "furo"
 html_title = f"iga_membrane {release}"
-html_static_path = []
 
 autosummary_generate = True
-autodoc_default_options = {"members": True}
+autodoc_typehints_format = "short"
+python_use_unqualified_type_names = True
 numpydoc_show_class_members = False
 numpydoc_attributes_as_param_list = True
 

@@ -1,4 +1,4 @@
-"""An own energy: a soap film on a ring, drawn to a plate by a voltage until it snaps down at a load of 0.79."""
+"""An own energy: a soap film on a ring, drawn to a plate by a voltage until it snaps down."""
 
 from dataclasses import dataclass
 

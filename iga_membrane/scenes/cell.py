@@ -60,6 +60,9 @@ def asperity_cell(
     penetration_tolerance : depth over the radius beyond which a state is no success.
     contact_line : "trimmed", the membrane passes through the sphere; "adhesion", it lies on a
         sphere that attracts it, for angles near 180 degrees; "auto" chooses.
+    shape : "square" or "circle".
+    liquid : its surface tension counts; 1 by default.
+    discretization : space, degree, elements, model; all chosen by the scene if omitted.
 
     Raises
     ------

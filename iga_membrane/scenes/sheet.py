@@ -82,6 +82,8 @@ def liquid_sheet(
         rim and passes through the particle; "auto" is conforming.
     membrane : the paper's formulation, which covers the wetted part of the particle too, instead
         of a contact line as the sheet's edge; without pressure, volume and weight of the liquid.
+    liquid : surface tension and density; both 1 by default.
+    discretization : space, degree, elements, model; all chosen by the scene if omitted.
 
     Raises
     ------

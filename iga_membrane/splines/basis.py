@@ -34,7 +34,7 @@ class Basis:
     continuity : continuous derivatives at element boundaries.
     periodic : whether the ends of the domain are joined.
     joints : parameters inside the domain where patches meet, with continuity 0.
-    knots : the clamped knot vector of a B-spline basis on a line, else None.
+    knots : (n + p + 1,) the clamped knot vector of a B-spline basis on a line, else None.
     """
 
     degree: int
@@ -126,6 +126,12 @@ class Basis:
 def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basis:
     """B-splines on a clamped knot vector.
 
+    Parameters
+    ----------
+    knots : not decreasing, the first and the last ``degree + 1`` times.
+    degree : 1 or more, above the continuity.
+    continuity : that is needed at inner knots.
+
     Raises
     ------
     SceneError
@@ -173,7 +179,15 @@ def periodic_basis(
 
     Parameters
     ----------
+    elements : more than the degree.
+    degree : 2 or more.
+    length : of the ring.
     joints : elements at whose start patches meet with continuity 0.
+
+    Raises
+    ------
+    SceneError
+        A degree below 2, or too few elements.
     """
     if degree < 2:
         raise SceneError(f"degree {degree} is not C1: C1 needed, so degree >= 2 (got {degree})")
@@ -203,7 +217,19 @@ def periodic_basis(
 
 
 def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) -> Basis:
-    """Lagrange polynomials on equidistant nodes of each element: C0, degree 1 to 4."""
+    """Lagrange polynomials on equidistant nodes of each element: C0, degree 1 to 4.
+
+    Parameters
+    ----------
+    breaks : (elements + 1,) ends of the elements.
+    degree : 1 to 4.
+    periodic : whether the ends of the domain are joined.
+
+    Raises
+    ------
+    SceneError
+        Another degree.
+    """
     if not 1 <= degree <= 4:
         raise SceneError(f"degree = {degree}: a lagrange space has degree 1 to 4")
     t = np.asarray(breaks, float)
@@ -234,6 +260,7 @@ def line_basis(
     kind : "bspline" (of full smoothness) or "lagrange" on equal elements, or a function from the
         number of elements and the degree to a basis.
     joints : inner elements at whose start splines have continuity 0.
+    elements, degree : of the basis.
 
     Raises
     ------
@@ -281,7 +308,15 @@ def ring_basis(
     kind: str, elements: int, degree: int, length: float, joints: Sequence[int] = ()
 ) -> Basis:
     """Uniform basis on a ring of circumference ``length``; ``joints`` as in
-    :func:`periodic_basis`."""
+    :func:`periodic_basis`.
+
+    Parameters
+    ----------
+    kind : "bspline" or "lagrange".
+    elements, degree : of the basis.
+    length : of the ring.
+    joints : as in :func:`periodic_basis`.
+    """
     if kind == "lagrange":
         return lagrange_basis(np.linspace(0.0, length, elements + 1), degree, periodic=True)
     return periodic_basis(elements, degree, length, joints)

@@ -41,6 +41,7 @@ def ring_space(
 
     Parameters
     ----------
+    degree : of both directions.
     kind : "bspline", "nurbs" or "lagrange", or a basis of your own for the meridian
         (:func:`line_basis`); the ring is then of B-splines.
     elements : along the meridian; the ring has twice as many, rounded up to whole sectors.
@@ -135,6 +136,7 @@ def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Ar
 
     Parameters
     ----------
+    space : of a ring patch, open or closed by a pole.
     profile : ``t -> (r, z, dr/dt)`` along ``xi2``; at a pole (t = 1) ``r = 0`` and ``dz/dt = 0``.
     """
     points, matrix = meridian_interpolation(space)

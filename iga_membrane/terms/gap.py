@@ -84,6 +84,7 @@ class LocalGap(Term):
 
     @property
     def name(self) -> str:  # type: ignore[override]
+        """That of the law."""
         return self.term.name
 
     def scaled(self, scale: Scale) -> LocalGap:

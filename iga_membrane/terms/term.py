@@ -27,6 +27,12 @@ class Scale:
     """Units in which a scene is solved: a length, a tension, and a frame.
 
     Local coordinates are ``rotation.T @ (x - origin) / length``.
+
+    Attributes
+    ----------
+    length, tension : the units.
+    origin : (3,) of the frame, in world coordinates.
+    rotation : (3, 3) its columns are the frame's axes.
     """
 
     length: float = 1.0
@@ -36,14 +42,17 @@ class Scale:
 
     @property
     def force(self) -> float:
+        """Unit: tension times length."""
         return self.tension * self.length
 
     @property
     def energy(self) -> float:
+        """Unit: tension times squared length."""
         return self.tension * self.length**2
 
     @property
     def pressure(self) -> float:
+        """Unit: tension over length."""
         return self.tension / self.length
 
     @property

@@ -34,6 +34,7 @@ def plot_side(
 
     Parameters
     ----------
+    solution : of a droplet.
     path : of the picture; its ending chooses the format (.png, .pdf, .svg).
     azimuth : degrees round the frame's z axis by which the camera is turned; it looks along y from
         where y is negative.

@@ -54,6 +54,7 @@ def plot(
 
     Parameters
     ----------
+    solution : converged or not.
     path : PNG file to write; an interactive window if None.
     color : "mean_curvature" (exact, from the spline), "pressure", "gap" to the nearest solid,
         "residual", the error ``|2 H + p / gamma|`` over ``1 / L`` on a logarithmic scale, or

@@ -33,6 +33,7 @@ def plot_section(
 
     Parameters
     ----------
+    solution : converged or not.
     path : of the picture; its ending chooses the format (.png, .pdf, .svg).
     resolution : points along each direction of the patch.
 
