@@ -12,6 +12,7 @@ from scipy.optimize import minimize_scalar
 from ..checks import record
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
+from ..solids import Sphere
 from ..solver.load_stepping import Bracket
 from ..solver.moving import Places
 from ..solver.options import SolverOptions
@@ -22,6 +23,8 @@ FIRST, LONGEST = 0.05, 0.2
 """Displacement in radii of the first step, and of any."""
 WIDTH = 2e-3
 """Width of the bracket of detachment in radii."""
+REACHED = 0.01
+"""Part of the line's largest force that may be missing where it counts as reached."""
 FARTHEST = 50.0
 """Displacement in radii at which the search ends."""
 
@@ -35,8 +38,8 @@ class PullOff:
     force : the largest force against the pull, of membrane and liquid, without the weight.
     at : displacement where it is reached.
     bracket : displacements between which the particle detaches.
-    limit : "line", the force falls before the particle detaches, since the contact line contracts
-        on it; "film", the liquid's surface cannot follow any farther while it still grows.
+    limit : "line", the contact line came to the largest force that it has on a sphere,
+        ``2 pi gamma r cos^2(theta / 2)``; "film", the membrane gave way before.
     displacements, forces, solutions : along the way.
     """
 
@@ -116,8 +119,7 @@ def pull_off(
             raise SolveError(f"the particle does not detach within {FARTHEST:g} radii", last)
     ways = sorted(held)
     most = ways[int(np.argmax([held[w] for w in ways]))]
-    falls = most < ways[-1]
-    if falls and most > 0.0:
+    if 0.0 < most < ways[-1]:
         k, poor = ways.index(most), -min(held.values())
         found = minimize_scalar(
             lambda place: -held[place] if pulled(place).success else poor,
@@ -129,12 +131,17 @@ def pull_off(
     ways = sorted(held)
     name = f"particle[{number}] displacement"
     solutions = [one for one in places.found if one.success]
+    particle = scene.particles[number] if scene.particles else scene.substrate
+    assert isinstance(particle, Sphere)
+    half = 0.5 * np.radians(particle.contact_angle)
+    most_of_line = 2.0 * np.pi * free.tension * radius * float(np.cos(half)) ** 2
+    of_line = max(-way * float(one.forces[number].contact_line @ line) for one in solutions)
     order = np.argsort(list(held))
     return PullOff(
         held[most],
         way * most * radius,
         Bracket(name, way * here * radius, way * failed * radius, 0, beyond.index or 0),
-        "line" if falls else "film",
+        "line" if of_line >= (1.0 - REACHED) * most_of_line else "film",
         [way * w * radius for w in ways],
         [held[w] for w in ways],
         [solutions[k] for k in order],

@@ -35,6 +35,7 @@ from .foot import (
     with_angle,
     with_rim,
 )
+from .free import at_displacement, frame_of, pulled_by, seat_of
 from .liquid import Discretization, Liquid, with_defaults
 from .moving import check_fixed, fixed, moving
 from .particle_foot import with_particles
@@ -45,7 +46,7 @@ HOLDS = ("none", "x", "xy", "xyz")
 
 
 def sessile_droplet(
-    substrate: Solid,
+    substrate: Solid | None,
     *,
     volume: float,
     liquid: Liquid | None = None,
@@ -59,7 +60,7 @@ def sessile_droplet(
     particles: Sequence[Sphere] = (),
     membrane: WholeMembrane | None = None,
 ) -> Scene:
-    """Droplet of a volume on a plane, on top of a sphere, or on asperities.
+    """Droplet of a volume on a plane, on top of a sphere, on asperities, or free.
 
     Below 180 degrees it has a contact line; at 180 its foot is a contact area and the whole skin is
     one closed membrane. On asperities below 180 degrees that membrane passes through them, with a
@@ -68,13 +69,14 @@ def sessile_droplet(
     Parameters
     ----------
     substrate : the solid with its contact angle: ``Plane``, ``Sphere``, ``SphereLattice``,
-        ``Spheres``, or any ``Solid`` of your own at 180 degrees.
+        ``Spheres``, or any ``Solid`` of your own at 180 degrees; None for a droplet about the
+        origin that touches nothing but a particle.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
     discretization : space, degree, elements, model.
     hold : "none", or the axes (of the plane's frame) along which a uniform body force holds the
-        centroid: "x", "xy", "xyz".
+        centroid: "x", "xy", "xyz"; of a free droplet "none" or "xyz".
     start : a surface of the same space to start from, in world coordinates; at 180 degrees also
         "flat", the drop on a plane through the tops, "touching" or "above", a sphere.
     penalty : None for exact contact, else the paper's penalty (eq. 24): traction over depth in
@@ -96,13 +98,18 @@ def sessile_droplet(
         have; a start below the substrate.
     """
     liquid, asked = with_defaults(liquid, discretization)
+    grains = check_particles(particles)
+    asked_substrate, beside = substrate, fixed(grains)
+    if substrate is None:
+        # its particle carries it
+        substrate, beside = seat_of(grains, hold), ()
     record("substrate", substrate, Solid)
     check_fixed(substrate)
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
     acceleration = _acceleration(gravity)
-    origin, axes = _frame(substrate)
+    origin, axes = _frame(substrate, free=asked_substrate is None)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
@@ -122,18 +129,18 @@ def sessile_droplet(
         None if penalty is None else penalty * liquid.surface_tension / length**2,
         penetration_tolerance,
     )
-    grains = check_particles(particles)
-    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, fixed(grains))
-    built = with_particles(parts) if grains else foot_of(parts)
+    held = "" if hold == "none" else hold
+    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, beside, held)
+    built = with_particles(parts) if beside else foot_of(parts)
     sector = built.sector
-    if isinstance(substrate, Plane):
-        free = {"full": "xy", "half": "x"}.get(sector.model, "")
-        terms += [Centroid(axis) for axis in free if not grains or axis in hold]
+    movable = "".join(axis for axis in "xyz" if axis not in sector.mirrored)
+    pinned = movable.strip("z") if isinstance(substrate, Plane) and not grains else ""
+    terms += [Centroid(axis) for axis in movable if axis in pinned or axis in held]
     pull = float(np.linalg.norm(acceleration))
 
     def again(**changed: Any) -> Scene:
         given: dict[str, Any] = {
-            "substrate": substrate,
+            "substrate": asked_substrate,
             "volume": volume,
             "liquid": liquid,
             "gravity": [float(g) for g in acceleration],
@@ -147,14 +154,20 @@ def sessile_droplet(
     def at(size: float) -> Scene:
         return again(gravity=[size / pull * g for g in acceleration])
 
+    def moved(displacement: float) -> Sphere:
+        return at_displacement(grains[0], length, displacement)
+
     # at 180 degrees on a plane there is nothing to start from without gravity
     has_way = isinstance(substrate, Sphere) or (
         isinstance(substrate, Plane) and substrate.contact_angle < 180.0
     )
-    described = _describe(substrate, volume, liquid, acceleration, hold, grains)
+    described = _describe(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
     if bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
+    elif asked_substrate is None and held:
+        values = (0.0, pulled_by(grains[0], length))
+        ramp = Ramp("particle[0] displacement", values, lambda d: again(particles=[moved(d)]))
     scene = Scene(
         built.surface,
         [*terms, *built.terms],
@@ -167,14 +180,18 @@ def sessile_droplet(
         particles=fixed(grains),
         acceleration=vector("gravity", acceleration),
         liquid_density=liquid.density,
-        hold="" if hold == "none" else hold,
+        hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=_hints(substrate, bond, sector),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
-    if grains and isinstance(substrate, Plane):
+    if asked_substrate is None:
+        toward = axes[:, 2:].T
+        gamma = liquid.surface_tension
+        return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+    if grains:
         alone = again(particles=(), hold="none", discretization=Discretization())
         scene = _with_particles(replace(scene, start_from=built.start_from), alone)
         line = built.terms[-1]
@@ -223,7 +240,7 @@ def _with_particles(scene: Scene, alone: Scene) -> Scene:
     """A droplet whose membrane passes through particles: it starts from the droplet alone, and if
     that fails from particles at easier angles."""
     angles = np.array([each.contact_angle for each in scene.particles])
-    easy = np.clip(angles, *EASY)
+    easy = np.where((angles < EASY[0]) | (angles > EASY[1]), np.clip(angles, *EASY), EASIEST)
     lead = int(np.abs(angles - easy).argmax())
 
     def at(angle: float) -> Scene:
@@ -248,6 +265,8 @@ def _with_particles(scene: Scene, alone: Scene) -> Scene:
 
 EASY = 60.0, 130.0
 """Contact angles of particles, in degrees, between which their menisci are good starts."""
+EASIEST = 90.0
+"""The angle from which a solve between them is approached if its own start fails."""
 
 
 AROUND = 12.0
@@ -260,10 +279,12 @@ def _acceleration(gravity: Any) -> Array:
     return np.array(vector("gravity", gravity))
 
 
-def _frame(
-    substrate: Solid,
-) -> tuple[tuple[float, float, float], Array]:
-    """Origin and axes of the scene: on the plane, or at the top of the sphere."""
+def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:
+    """Origin and axes of the scene: on the plane, at the top of the sphere, or those of a free
+    droplet."""
+    if free:
+        assert isinstance(substrate, Sphere)
+        return (0.0, 0.0, 0.0), frame_of(substrate)
     if isinstance(substrate, Plane):
         return substrate.point, substrate.axes()
     if not isinstance(substrate, Sphere):
@@ -290,7 +311,7 @@ def _hints(substrate: Solid, bond: Array, sector: Sector) -> tuple[str, ...]:
 
 
 def _describe(
-    substrate: Solid,
+    substrate: Solid | None,
     volume: float,
     liquid: Liquid,
     acceleration: Array,
@@ -314,8 +335,10 @@ def _describe(
     }
 
 
-def _describe_substrate(substrate: Solid) -> dict[str, Any]:
+def _describe_substrate(substrate: Solid | None) -> dict[str, Any]:
     match substrate:
+        case None:
+            return {"kind": "none"}
         case Sphere():
             size: dict[str, Any] = {
                 "kind": "sphere",

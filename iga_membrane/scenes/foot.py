@@ -43,6 +43,7 @@ class Question:
     law: Contact
     contact_line: str
     particles: tuple[Sphere, ...] = ()
+    held: str = ""
 
     @property
     def down(self) -> float:
@@ -110,9 +111,14 @@ def _on_a_line(parts: Question) -> Foot:
     substrate, mesh, scale = parts.substrate, parts.asked.mesh(), parts.scale
     assert isinstance(substrate, (Plane, Sphere))
     sector = sector_of(mesh, parts.bond)
-    foot = rest_of(substrate, parts.liquid, scale.length, parts.down)
+    foot = rest_of(substrate, parts.liquid, scale, parts.down)
     bond = abs(float(parts.bond[2]))
     grading = _grading(substrate.contact_angle, bond, foot.pancake.length)
+    if parts.held and isinstance(substrate, Sphere):
+        # pulled at, the membrane bends over the sphere's radius, and turns away from it slowly
+        slow = min(1.0, float(np.sin(np.radians(min(substrate.contact_angle, 90.0)))) / WEDGE)
+        first = NECK * substrate.radius / scale.length * slow
+        grading = Grading(min(grading.first, first))
     if parts.law.penalty is not None:
         raise SceneError(
             'solver.contact = "penalty": not available yet with a contact line, only at 180 degrees'
@@ -280,7 +286,7 @@ def _on_the_plane(parts: Question) -> Foot:
             "substrate.contact_angle = 180, gravity: on a plane only gravity straight towards it "
             "holds a droplet at 180 degrees; give such gravity or an angle < 180"
         )
-    foot = rest_of(Plane(STEEPEST), parts.liquid, scale.length, bond)
+    foot = rest_of(Plane(STEEPEST), parts.liquid, scale, bond)
     length = foot.pancake.length
     rim = rounded(bond, BALL).foot
     # the foot bends over its own radius or the capillary length, whichever is shorter
@@ -342,16 +348,23 @@ class Rest:
     support: Sliding
 
 
-def rest_of(substrate: Plane | Sphere, liquid: Liquid, length: float, bond: float) -> Rest:
+def rest_of(substrate: Plane | Sphere, liquid: Liquid, scale: Scale, bond: float) -> Rest:
     gamma, angle, unit = liquid.surface_tension, substrate.contact_angle, 4.0 * np.pi / 3.0
     if isinstance(substrate, Plane):
         pancake = least_energy_pancake(angle, bond, unit)
         return Rest(pancake, 0.0, PlaneContactLine(gamma, angle), Sliding("xi2=0"))
-    radius = substrate.radius / length
-    polar, cap = drop_on_sphere(angle, radius, unit)
+    ball = scale.local_sphere(substrate)
+    polar, cap = drop_on_sphere(angle, ball.radius, unit)
     line = SphereContactLine(gamma, substrate)
-    lift = -2.0 * radius * np.sin(0.5 * polar) ** 2
+    lift = ball.center[2] + ball.radius * np.cos(polar)
     return Rest(cap, float(lift), line, Sliding("xi2=0", substrate))
+
+
+NECK = 3.0
+"""First step along a neck on a sphere, by the mean one, over the sphere's radius by the drop's."""
+
+WEDGE = 0.7
+"""Sine of a contact angle below which those steps are shorter as it is."""
 
 
 def _grading(contact_angle: float, bond: float, length: float) -> Grading:

@@ -47,7 +47,7 @@ def with_particles(parts: Question) -> Foot:
             f'planes; "{model}" is the smallest model here'
         )
     sector = Sector(mesh.model or model)
-    rest = rest_of(parts.substrate, parts.liquid, scale.length, parts.down)
+    rest = rest_of(parts.substrate, parts.liquid, scale, parts.down)
     patch = round_patch(of_pancake(rest.pancake), local, mesh, 2 * sector.copies)
     start = patch.surface(of_pancake(rest.pancake))
     mesh = replace(mesh, elements=start.space.bases[1].elements)
@@ -66,5 +66,5 @@ def with_particles(parts: Question) -> Foot:
     return Foot(surface, sector, mesh, [rest.line, line], support, start_from=from_alone)
 
 
-REACH = 0.5
+REACH = 1.5
 """Distance over which the line's conormals turn into the membrane's normals."""

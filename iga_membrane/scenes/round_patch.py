@@ -4,7 +4,7 @@ A droplet on a plane is a disc. The map ``zeta = (w - b) / (1 - b* w)`` of the u
 conformal place on the droplet (1 on its contact line) and ``b`` that of a particle, keeps the line
 a circle and makes the particle's another: rings of ``zeta`` fit both, and elements shrink towards
 the particle by themselves. From the particle to the line the azimuth of ``zeta`` turns into that
-of ``w``, so that the line is divided evenly.
+of ``w``, so that the line is divided about evenly.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ from .start import Pancake, meniscus
 
 ROUND, ALONG = 48, 14
 """Elements round a particle, and from the droplet's line to the particle's at least."""
-NARROWER, FINER = 0.25, 0.6
-"""``|zeta|`` of a particle's line so near to the droplet's that there is little membrane between
-them, and the part of elements that is added then."""
-DENSER = 0.33
-"""Distance of elements along the droplet's line at a particle, over their mean, at least."""
+CLOSE = 0.4
+"""Closeness of the pole to the droplet's line below which that line is
+divided more finely there, and the whole mesh is finer by as much."""
+FINEST = 2.2
+"""The same at most."""
 COARSEST = 0.12
 """Length of an element at the droplet's line, over the droplet's length, at most."""
 ACROSS = 3.0
@@ -66,8 +66,7 @@ class RoundPatch:
         aim = self.pole / abs(self.pole) if self.pole else 1.0
         half = 0.5 * (ring_angles(space) - np.angle(aim))[:, None]
         # Moebius maps act on half the azimuth's tangent by a factor
-        closeness = (1.0 - abs(self.pole)) / (1.0 + abs(self.pole))
-        factor = (max(closeness, DENSER) / closeness) ** size
+        factor = max(_closeness(self.pole), CLOSE) ** -size
         turn = aim * np.exp(2j * np.arctan2(factor * np.sin(half), np.cos(half)))
         values = _droplet(meridian, self.pole, size * turn)
         values[:, 0, 2] = 0.0
@@ -104,7 +103,7 @@ def round_patch(
     span = float(np.arcsinh(1.0 / spot))
     along, outside = mesh.elements, 1.0 - np.arcsinh(1.0) / span
     if along < 0:
-        finer = 1.0 + FINER * min(spot / NARROWER, 1.0) ** 2
+        finer = float(np.clip(CLOSE / _closeness(pole), 1.0, FINEST))
         around = max(finer * ROUND, 2.0 * np.pi * meridian.r[0] / COARSEST)
         along = int(np.ceil(max(finer * ALONG / outside, around * span / (2.0 * np.pi))))
         for own, place in zip(line, places, strict=True):
@@ -114,6 +113,11 @@ def round_patch(
     around = int(np.ceil(along * 2.0 * np.pi / span / sectors)) * sectors
     space = drop_space("bspline", mesh.degree, along, sectors, around=around)
     return RoundPatch(space, pole, spot, span)
+
+
+def _closeness(pole: complex) -> float:
+    """Of the pole to the droplet's line: 1 in the middle, 0 on the line."""
+    return (1.0 - abs(pole)) / (1.0 + abs(pole))
 
 
 def _droplet(meridian: Meridian, pole: complex, zeta: Array) -> Array:

@@ -67,7 +67,10 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
 
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, substrate = tables["liquid"], tables["substrate"]
-    for field, table in (("liquid.volume", liquid), ("substrate.contact_angle", substrate)):
+    needed = [("liquid.volume", liquid)]
+    if substrate.get("kind") != "none":
+        needed.append(("substrate.contact_angle", substrate))
+    for field, table in needed:
         if field.split(".")[1] not in table:
             raise SceneError(f"{field}: missing; a sessile droplet needs it")
     membrane = membrane_of(tables["solver"])
@@ -100,11 +103,10 @@ def _start(table: Mapping[str, Any]) -> str | None:
     return None if start == "auto" else str(start)
 
 
-def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Spheres:
-    """The solid under a droplet; a sphere or a lattice has its tops at z = 0."""
+def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Spheres | None:
+    """The solid under a droplet, None for a free one; a sphere or a lattice has its tops at
+    z = 0."""
     kind = choice("substrate.kind", table.get("kind", "plane"), SUBSTRATES)
-    if kind not in _SUBSTRATE_KEYS:
-        raise later(f'substrate.kind = "{kind}"')
     allowed = _SUBSTRATE_KEYS[kind]
     for key in table:
         if key != "kind" and key not in allowed:
@@ -112,6 +114,8 @@ def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Sph
                 f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
                 f"it or choose another substrate.kind ({', '.join(SUBSTRATES)})"
             )
+    if kind == "none":
+        return None
     angle = table["contact_angle"]
     for key in _NEEDED[kind]:
         if key not in table:
@@ -142,7 +146,8 @@ def _offset(table: Mapping[str, Any]) -> tuple[float, float]:
     return float(offset[0]), float(offset[1])
 
 
-_SUBSTRATE_KEYS = {
+_SUBSTRATE_KEYS: dict[str, tuple[str, ...]] = {
+    "none": (),
     "plane": ("contact_angle",),
     "sphere": ("contact_angle", "radius", "offset"),
     "sphere_lattice": ("contact_angle", "radius", "spacing", "arrangement", "offset", "base"),

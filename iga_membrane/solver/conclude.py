@@ -131,7 +131,7 @@ def _forces(
     found: Mapping[str, float],
 ) -> tuple[ParticleForces, ...]:
     """Forces on a sheet's particle, or on those of a droplet."""
-    if scene.particles:
+    if scene.particles and assembly.trim is not None:
         return forces_on_particles(scene, assembly, surface, multipliers)
     return particle_forces(scene, assembly, surface, multipliers, found)
 

@@ -103,14 +103,13 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
         return _pull_through(assembly, surface, term.edge)
     moment = term.energy(edge, points, 0.0, BodyDensity(1.0))
     x, dx = edge.values @ points[edge.functions], edge.d @ points[edge.functions]
-    # vector area of the cap, and int z n dA: its horizontal parts by Stokes' theorem
+    slope = np.array(body.gradient)
     area = 0.5 * np.einsum("eqi,eq->i", np.cross(x, dx), edge.weights)
-    square = 0.5 * x[..., 2] ** 2 * edge.weights
-    first = np.array([-(square * dx[..., 1]).sum(), (square * dx[..., 0]).sum(), -moment])
-    pressure = body.constant * area + body.gradient[2] * first
+    moments = _moments(x, dx, edge.weights, -moment)
+    pressure = body.constant * area + slope @ moments
     total = term.forces(edge, points, term.strength, body).sum(axis=(0, 1))
-    # raising the cap changes the body integrals under it; shifting it sideways does not
-    total[2] += pressure[2]
+    # the body integrals under the cap change with it: their flux is upwards, of the height
+    total += np.array([*(slope[:2] * moments[2, 2]), pressure[2]])
     total += assembly.edges.push(points, assembly.line_load(multipliers))
     fading = 1.0 - surface.space.abscissae[..., 1]
     along = points_of(surface.space, fading[..., None])
@@ -118,6 +117,31 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
         total[i] -= _work(assembly, surface, multipliers, along * np.eye(3)[i])
     whole = assembly.whole
     return Pull(whole(total), whole(pressure))
+
+
+def _moments(x: Array, dx: Array, weights: Array, lifted: float) -> Array:
+    """(3, 3) ``int x_i n_j dA`` over a cap, by integrals along its line.
+
+    Parameters
+    ----------
+    x, dx : (elements, points, 3) the line and its derivative; lifted : ``int z n_z dA``.
+
+    Notes
+    -----
+    Stokes' theorem ``int n x grad f dA = oint f dx`` for all quadratic f; only the trace is left.
+    """
+
+    def around(i: int, j: int, k: int) -> float:
+        """``oint x_i x_j dx_k``"""
+        return float((x[..., i] * x[..., j] * dx[..., k] * weights).sum())
+
+    return np.array(
+        [
+            [lifted - around(0, 2, 1), -0.5 * around(0, 0, 2), 0.5 * around(0, 0, 1)],
+            [0.5 * around(1, 1, 2), lifted + around(1, 2, 0), -0.5 * around(1, 1, 0)],
+            [-0.5 * around(2, 2, 1), 0.5 * around(2, 2, 0), lifted],
+        ]
+    )
 
 
 def _work(assembly: Assembly, surface: Surface, multipliers: Array, displacement: Array) -> float:
@@ -173,47 +197,39 @@ def particle_forces(
     multipliers: Array,
     measures: Mapping[str, float],
 ) -> tuple[ParticleForces, ...]:
-    """Forces on the particle of a sheet; none where the scene has no particle.
+    """Forces on the particle on which the membrane ends, of a sheet or a free droplet; none where
+    the scene has no particle.
 
     Notes
     -----
     The scene's ``acceleration`` weighs the particle and the liquid on it, also where the sheet
     itself is computed without weight.
     """
-    particle, scale = scene.substrate, scene.units
-    if scene.kind != "liquid_sheet" or not isinstance(particle, Sphere):
+    particle, scale, sheet = scene.substrate, scene.units, scene.kind == "liquid_sheet"
+    if not (sheet or scene.particles) or not isinstance(particle, Sphere):
         return ()
     pull = pull_on_sphere(scene, assembly, surface, multipliers)
-    line = line_on_sphere(scene, assembly, surface)
-    up, g, rho = np.array([0.0, 0.0, 1.0]), -scene.acceleration[2], scene.liquid_density
-    pressed = pull.pressure * scale.force
-    if g and not assembly.body.gradient[2]:
+    line, ball = line_on_sphere(scene, assembly, surface), scale.local_sphere(particle)
+    g, rho = np.array(scene.acceleration), scene.liquid_density
+    pressed = pull.pressure
+    if sheet and g[2] and not assembly.body.gradient[2]:
         # a sheet without weight still carries weighty liquid: p0 - rho g z on the cap
-        pressed = pressed + _weight_on_cap(line, scale.local_sphere(particle)) * (
-            rho * g * scale.length**3
-        )
-    buoyancy = rho * g * measures["V_cap"] * up
-    weight = -4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g * up
-    contact = (pull.total - pull.pressure) * scale.force
+        unit = scale.length**3 / scale.force
+        pressed = pressed - _weight_on_cap(line, ball) * (rho * g[2] * unit)
+    pressed = scale.axes @ pressed * scale.force
+    buoyancy = -rho * volume_over_cone(line, ball) * scale.length**3 * g
+    weight = 4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g
+    contact = scale.axes @ (pull.total - pull.pressure) * scale.force
+    polar = np.radians(measures["phi_deg" if sheet else "alpha_deg"])
+    axis = scale.axes[:, 2]
     paper = paper_forces(
         particle,
-        measures["pressure"],
-        measures["cap_height"],
-        float(weight[2]),
-        float(contact[2]),
-        float(buoyancy[2]),
+        measures["pressure" if sheet else "p_contact"],
+        particle.radius * (1.0 - float(np.cos(polar))),
+        *(float(part @ axis) for part in (weight, contact, buoyancy)),
     )
-    return (
-        ParticleForces(
-            np.array(particle.center),
-            weight,
-            contact,
-            pressed - buoyancy,
-            buoyancy,
-            np.zeros(3),
-            paper,
-        ),
-    )
+    none, center = np.zeros(3), np.array(particle.center)
+    return (ParticleForces(center, weight, contact, pressed - buoyancy, buoyancy, none, paper),)
 
 
 def _weight_on_cap(line: ContactLine, solid: Sphere) -> Array:

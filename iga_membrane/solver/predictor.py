@@ -27,6 +27,8 @@ FAILED = Status.STALLED, Status.MAX_ITER
 NEARBY = 1.0
 """Distance from a particle's centre along its axis, over the droplet's length, within which the
 membrane is its own."""
+FARTHEST, CAREFUL = 0.25, 0.5
+"""Longest step, over the droplet's length and over a particle's radius."""
 PLANE = 0.05
 """Height above a plane, over the droplet's length, at which half of a meniscus is left."""
 DIMPLE = 0.3
@@ -39,7 +41,14 @@ def settings_of(scene: Scene, options: SolverOptions, started: float) -> NewtonO
     # a droplet on asperities may roll to a place where it is stable
     near = 0.0 if _rolls(scene) else NEAR
     deadline = started + options.max_cpu_s
-    return NewtonOptions(options.max_iterations, options.tolerance, near=near, deadline=deadline)
+    sizes = [each.radius / scene.units.length for each in scene.particles]
+    return NewtonOptions(
+        options.max_iterations,
+        options.tolerance,
+        step_limit=min([FARTHEST, *(CAREFUL * size for size in sizes)]),
+        near=near,
+        deadline=deadline,
+    )
 
 
 def _rolls(scene: Scene) -> bool:

@@ -79,15 +79,16 @@ def trimmed_audit(
         )
     push = sector.copies * push
     foot = next((t for t in terms if isinstance(t, PlaneContactLine)), None)
-    cosine = 0.0
+    cosine, below = 0.0, 0.0
     if foot is not None:
         rim = contact_line(surface, foot.edge, points)
         on_plane = vertical_forces(rim, body, tension, foot.contact_angle)
         push[2] -= on_plane.push - on_plane.line
+        below = abs(on_plane.push)
         young = float(np.cos(np.radians(foot.contact_angle)))
         cosine = float(np.cos(rim.angle) @ rim.arc / rim.arc.sum()) - young
     weight = float(np.linalg.norm(gradient)) * inside
-    size = max(weight, abs(float(push[2])), TINY)
+    size = max(weight, below, abs(float(push[2])), TINY)
     missing = push + gradient * inside
     loose = [axis not in sector.mirrored for axis in "xy"]
     sideways = float(np.hypot(*(missing[:2] * loose))) / size

@@ -73,7 +73,7 @@ class Centroid(Constraint):
 
     Attributes
     ----------
-    axis : "x" or "y" in local coordinates.
+    axis : "x", "y" or "z" in local coordinates.
     target : of the integral of that coordinate over the liquid.
     """
 
@@ -86,7 +86,8 @@ class Centroid(Constraint):
         return f"centroid_{self.axis}"
 
     def density(self) -> BodyDensity:
-        return BodyDensity(0.0, (float(self.axis == "x"), float(self.axis == "y"), 0.0))
+        x, y, z = (float(self.axis == axis) for axis in "xyz")
+        return BodyDensity(0.0, (x, y, z))
 
     def scaled(self, scale: Scale) -> Centroid:
         return self

@@ -51,7 +51,8 @@ def on_sphere(model):
     """A drop whose edge slides on a sphere, off it by a little, with weight and volume."""
     scene = droplet(110, degree=3, elements=4, model=model)
     sphere = iga.Sphere(contact_angle=70.0, radius=1.5, center=(0.0, 0.0, -1.2))
-    terms = [TENSION, iga.Gravity(0.7, (0.0, 0.0, -1.1)), iga.Volume(4.0)]
+    weight = GRAVITY if model == "full" else iga.Gravity(0.7, (0.0, 0.0, -1.1))
+    terms = [TENSION, weight, iga.Volume(4.0)]
     terms.append(iga.SphereContactLine(1.3, sphere))
     supports = [iga.Sliding("xi2=0", sphere), iga.Sector(model)]
     return iga.Scene(scene.surface, terms, supports, scale=iga.Scale())

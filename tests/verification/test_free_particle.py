@@ -1,5 +1,6 @@
 """Particles that move: equilibrium, stability, pull-off, and the answer on self-cleaning."""
 
+import tomllib
 from dataclasses import replace
 from functools import cache
 
@@ -21,7 +22,7 @@ def lift(solution):
     return solution.forces[0].effective[2]
 
 
-@pytest.mark.parametrize(("angle", "density", "low"), [(65.0, 1.0, 0.8), (115.0, 0.6, -0.7)])
+@pytest.mark.parametrize(("angle", "density", "low"), [(65.0, 1.0, 0.8), (115.0, 0.6, 0.2)])
 def test_free_particle_on_sheet_rests_at_root_of_force_curve(angle, density, low):
     free = iga.solve(sheet(angle, density=density, motion="vertical"))
     root = iga.critical_value(lambda h: sheet(angle, h, density=density), lift, low, low + 0.7)
@@ -52,7 +53,9 @@ def test_particle_too_heavy_for_its_line_falls_off():
     assert bracket.lo - bracket.hi <= 1e-3
 
 
-@pytest.mark.parametrize("angle", [30.0, 90.0, 150.0])
+@pytest.mark.parametrize(
+    "angle", [*(pytest.param(a, marks=pytest.mark.slow) for a in (30.0, 90.0)), 150.0]
+)
 def test_pull_off_reaches_the_line_s_largest_force_and_never_more(angle):
     found = iga.pull_off(sheet(angle, gravity=0.0, motion="vertical", size=12.0))
     line = max(s.forces[0].contact_line[2] for s in found.solutions)
@@ -65,11 +68,12 @@ def test_pull_off_reaches_the_line_s_largest_force_and_never_more(angle):
     assert found.displacements[0] == 0.0 > found.displacements[-1] == found.bracket.lo
 
 
+@pytest.mark.slow
 def test_pull_off_is_bounded_by_film_where_rim_is_near():
-    """A short sheet tears from a wettable particle while the force still grows."""
-    found = iga.pull_off(sheet(20.0, gravity=0.0, motion="vertical", size=2.2))
+    """The line would contract beyond the rim before its force falls."""
+    found = iga.pull_off(sheet(30.0, gravity=0.0, motion="vertical", size=1.6))
     assert found.limit == "film"
-    assert found.force < 2.0 * np.pi * np.cos(np.radians(10.0)) ** 2
+    assert found.force < 0.99 * 2.0 * np.pi * np.cos(np.radians(15.0)) ** 2
 
 
 def test_pull_needs_one_free_particle():
@@ -118,7 +122,7 @@ def carried(motion="normal"):
     return scene, iga.solve(scene)
 
 
-@pytest.mark.parametrize("motion", ["normal", "vertical"])
+@pytest.mark.parametrize("motion", ["normal", pytest.param("vertical", marks=pytest.mark.slow)])
 def test_free_particle_on_droplet_is_in_balance_along_its_line(motion):
     scene, solution = carried(motion)
     assert abs(along_normal(scene.free_particles, solution)) <= 1e-8 * 0.2
@@ -137,6 +141,7 @@ def test_free_particle_on_droplet_is_in_balance_along_its_line(motion):
     assert energies[1] < min(energies[0], energies[2])
 
 
+@pytest.mark.slow
 def test_two_free_particles_rise_like_one_another():
     one = iga.Sphere(80.0, 0.15, (0.75, 0.0, 1.2), 1.5, "normal")
     pair = iga.solve(droplet(one, replace(one, center=(-0.75, 0.0, 1.2))))
@@ -148,29 +153,32 @@ def test_two_free_particles_rise_like_one_another():
             assert abs(force.effective @ line) / np.linalg.norm(line) <= 1e-8 * 0.15
 
 
+@pytest.mark.slow
 def test_resting_particle_stays_where_liquid_presses_it_down():
     """Or is lifted, when it is light and wettable enough."""
-    place = (1.0, 0.0, 0.2)
+    alone = iga.solve(droplet())
+    x = alone.surface.grid(3, 400, 1).position[0]
+    low = x[x[:, 2] < 0.5 * alone.measures["height"]]
+    beside = float(np.hypot(*low[np.abs(low[:, 2] - 0.3).argmin(), :2]))
     heavy, light = (
-        iga.solve(droplet(iga.Sphere(60.0, 0.2, place, density, "resting"), hold="x"))
-        for density in (200.0, 0.0)
+        iga.solve(droplet(iga.Sphere(60.0, 0.3, (beside, 0.0, 0.3), density, "resting"), hold="x"))
+        for density in (20.0, 0.0)
     )
-    assert heavy.forces[0].center[2] == pytest.approx(0.2, abs=1e-15)
+    assert heavy.forces[0].center[2] == pytest.approx(0.3, abs=1e-15)
     assert heavy.forces[0].effective[2] < 0.0
-    assert light.forces[0].center[2] > 0.2 + 1e-3
-    assert abs(light.forces[0].effective[2]) <= 1e-8 * 0.2
+    assert light.forces[0].center[2] > 0.3 + 1e-3
+    assert abs(light.forces[0].effective[2]) <= 1e-8 * 0.3
 
 
 def test_scene_file_reads_motion():
     text = "[[particle]]\nradius = 0.2\ncontact_angle = 90.0\ncenter = [0.82, 0.0, 1.12]\n"
     text += 'density = 2.0\nmotion = "normal"\n[droplet]\nhold = "x"\n'
-    import tomllib
-
     scene = iga.read_scene(tomllib.loads(droplet_file(150.0, BOND, text))).scene
-    record = result(iga.solve(scene))
-    _, solution = carried()
-    assert record["scene"]["particle"][0]["motion"] == "normal"
-    assert record["forces"][0]["center"] == pytest.approx(solution.forces[0].center, abs=1e-9)
+    asked, solution = carried("normal")
+    assert scene.description["particle"] == asked.description["particle"]
+    assert scene.description["particle"][0]["motion"] == "normal"
+    assert scene.free_particles.lines == pytest.approx(asked.free_particles.lines)
+    assert result(solution)["forces"][0]["center"] == solution.forces[0].center.tolist()
 
 
 def test_motions_that_a_scene_lacks_are_refused():

@@ -1,0 +1,166 @@
+"""Particles on droplets and sheets: convergence, where they are solved, pull-off, free droplets.
+
+    OMP_NUM_THREADS=1 python benchmarks/particles.py [converge|free|pull|resting|grid ...]
+
+Prints the tables of docs/results/particles.md.
+"""
+
+from __future__ import annotations
+
+import sys
+from time import process_time
+
+import numpy as np
+
+import iga_membrane as iga
+
+VOLUME = 4.0 * np.pi / 3.0
+PLANE = iga.Plane(150.0)
+LIMIT = iga.SolverOptions(max_cpu_s=120.0)
+
+
+def profile(bond: float) -> tuple[np.ndarray, float]:
+    """(k, 2) r and z of the droplet without particles, from its line to its top; its height."""
+    alone = iga.solve(iga.sessile_droplet(PLANE, volume=VOLUME, gravity=bond))
+    x = alone.surface.grid(3, 2001, 1).position[0]
+    return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2]], axis=1), alone.measures["height"]
+
+
+def on_droplet(angle: float, radius: float, place: np.ndarray, bond: float, **mesh) -> iga.Scene:
+    particle = iga.Sphere(angle, radius, (float(place[0]), 0.0, float(place[1])), 1.0)
+    return iga.sessile_droplet(
+        PLANE,
+        volume=VOLUME,
+        gravity=bond,
+        hold="x",
+        particles=[particle],
+        discretization=iga.Discretization(**mesh),
+    )
+
+
+def pull(solution: iga.Solution) -> np.ndarray:
+    return solution.forces[0].effective - solution.forces[0].weight
+
+
+def at_polar(x: np.ndarray, height: float, polar: float) -> np.ndarray:
+    """Place seen from half the height at an angle from the top."""
+    seen = np.degrees(np.arctan2(x[:, 0], x[:, 1] - 0.5 * height))
+    return x[np.abs(seen - polar).argmin()]
+
+
+def converge() -> None:
+    x, height = profile(0.5)
+    place = at_polar(x, height, 95.0)
+    print("| elements | unknowns | F_x | F_z | horizontal balance | iterations | CPU s |")
+    print("|---|---|---|---|---|---|---|")
+    for elements in (12, 16, 24, 36, 54):
+        start = process_time()
+        found = iga.solve(on_droplet(90.0, 0.2, place, 0.5, elements=elements))
+        force = pull(found)
+        off = abs(found.hold_force[0] - force[0]) / np.linalg.norm(force)
+        print(
+            f"| {elements} | {found.unknowns} | {force[0]:.7f} | {force[2]:.7f} | {off:.1e} | "
+            f"{found.newton_iterations} | {process_time() - start:.1f} |",
+            flush=True,
+        )
+
+
+def free() -> None:
+    """Ten random directions each; the weightless drop on a sphere is the closed form."""
+    from iga_membrane.scenes.start import drop_on_sphere
+
+    print("| angle | radius | pressure | A_wet | largest force | CPU s |")
+    print("|---|---|---|---|---|---|")
+    ways = np.random.default_rng(0).standard_normal((10, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    for angle in (20.0, 60.0, 90.0, 120.0, 160.0):
+        for radius in (0.1, 0.3, 0.5):
+            polar, cap = drop_on_sphere(angle, radius, VOLUME)
+            wet = 4.0 * np.pi * radius**2 * np.sin(0.5 * polar) ** 2
+            start, errors = process_time(), []
+            for way in ways:
+                particle = iga.Sphere(angle, radius, tuple(float(c) for c in 1.2 * way))
+                found = iga.solve(iga.sessile_droplet(None, volume=VOLUME, particles=[particle]))
+                measured = found.measures
+                errors.append(
+                    [
+                        abs(measured["pressure"] * cap.radius / 2.0 - 1.0),
+                        abs(measured["A_wet"] / wet - 1.0),
+                        np.abs(found.forces[0].effective).max(),
+                    ]
+                )
+            worst = " | ".join(f"{e:.0e}" for e in np.max(errors, axis=0))
+            seconds = (process_time() - start) / len(ways)
+            print(f"| {angle:g} | {radius:g} | {worst} | {seconds:.2f} |", flush=True)
+
+
+def pulled() -> None:
+    print("| angle | sheet | largest F_CL / bound | at | detaches between | limit | CPU s |")
+    print("|---|---|---|---|---|---|---|")
+    for angle in (30.0, 60.0, 90.0, 120.0, 150.0):
+        for size in (5.0, 20.0):
+            start = process_time()
+            particle = iga.Sphere(angle, 1.0, (0.0, 0.0, -1.0), 0.0, "vertical")
+            found = iga.pull_off(iga.liquid_sheet(particle, size=size, boundary="circle"))
+            line = max(s.forces[0].contact_line[2] for s in found.solutions)
+            bound = 2.0 * np.pi * np.cos(0.5 * np.radians(angle)) ** 2
+            print(
+                f"| {angle:g} | {size:g} | {line / bound:.7f} | {found.at:.4f} | "
+                f"{found.bracket.lo:.5f}, {found.bracket.hi:.5f} | {found.limit} | "
+                f"{process_time() - start:.1f} |",
+                flush=True,
+            )
+
+
+HEAD = "| Bo | angle | radius | place | status | F_x | F_z | balance x | z | iterations | CPU s |"
+
+
+def row(angle: float, radius: float, place: np.ndarray, bond: float, name: str) -> bool:
+    start = process_time()
+    found = iga.solve(on_droplet(angle, radius, place, bond), LIMIT, on_fail="return")
+    force, size = pull(found), max(bond * VOLUME, 1.0)
+    sideways = abs(found.hold_force[0] - force[0]) / size
+    upwards = abs(found.contact["support_force"] - force[2] - bond * VOLUME) / size
+    print(
+        f"| {bond:g} | {angle:g} | {radius:g} | {name} | {found.kind or found.status.name} | "
+        f"{force[0]:.5f} | {force[2]:.5f} | {sideways:.0e} | {upwards:.0e} | "
+        f"{found.newton_iterations} | {process_time() - start:.1f} |",
+        flush=True,
+    )
+    return found.success
+
+
+def resting() -> None:
+    """On the plane, the centre on the profile of the droplet alone; balances over the larger of
+    the weight and gamma R."""
+    print(HEAD, "|---" * 11 + "|", sep="\n")
+    solved = []
+    for bond in (0.0, 0.25, 1.0):
+        x, height = profile(bond)
+        low = x[x[:, 1] < 0.5 * height]
+        for angle in (60.0, 90.0, 120.0):
+            for radius in (0.1, 0.2, 0.3):
+                place = np.array([low[np.abs(low[:, 1] - radius).argmin(), 0], radius])
+                solved.append(row(angle, radius, place, bond, "resting"))
+    print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
+
+
+def grid() -> None:
+    print(HEAD, "|---" * 11 + "|", sep="\n")
+    solved = []
+    x, height = profile(0.5)
+    for angle in (15.0, 50.0, 90.0, 130.0, 165.0):
+        for radius in (0.05, 0.2, 0.5):
+            for polar in (20.0, 65.0, 110.0, 140.0):
+                place = at_polar(x, height, polar)
+                if place[1] >= radius:
+                    solved.append(row(angle, radius, place, 0.5, f"{polar:g}"))
+    print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
+
+
+STUDIES = {"converge": converge, "free": free, "pull": pulled, "resting": resting, "grid": grid}
+
+if __name__ == "__main__":
+    for study in sys.argv[1:] or STUDIES:
+        print(f"\n## {study}\n")
+        STUDIES[study]()
