@@ -20,7 +20,6 @@ extensions = [
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.doctest",
     "sphinx.ext.mathjax",
 ]
 myst_enable_extensions = ["dollarmath", "amsmath"]
@@ -31,8 +30,7 @@ html_theme = "furo"
 html_title = f"iga_membrane {release}"
 
 autosummary_generate = True
-autodoc_typehints_format = "short"
-python_use_unqualified_type_names = True
+autodoc_typehints = "none"  # arguments are described in words
 numpydoc_show_class_members = False
 numpydoc_attributes_as_param_list = True
 
