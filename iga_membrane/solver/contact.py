@@ -163,8 +163,8 @@ class ContactSet:
         up[..., 2] = 1.0
         at = Nearest(x[..., 2] - top, up, none, np.full(x.shape[:-1], -1))
         near = self.solid.nearest(x[low])
-        for known, exact in zip(vars(at).values(), vars(near).values(), strict=True):
-            known[low] = exact
+        for name in ("gap", "normal", "bend", "which"):
+            getattr(at, name)[low] = getattr(near, name)
         return at
 
     def gained(self, points: Array) -> float:
