@@ -57,6 +57,7 @@ def test_force_is_slope_of_energy():
     assert here.forces[0].effective @ way == pytest.approx(-slope, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_droplet_pulled_off_its_particle_is_named():
     lost = iga.solve(free(160.0, 0.5, (0.0, 0.0, 1.62), hold="xyz"), on_fail="return")
     assert lost.status is iga.Status.LIMIT_POINT
