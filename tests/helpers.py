@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
+import sys
+from pathlib import Path
 
 import numpy as np
 
 import iga_membrane as iga
 
+EXAMPLES = Path(__file__).parents[1] / "examples"
 UNIT_VOLUME = 4.0 * np.pi / 3.0
 MEASURES = ("height", "contact_radius", "p_base", "energy", "A_LG", "A_wet")
+
+
+def example(name):
+    """An example as a module."""
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # where dataclasses look for their annotations
+    spec.loader.exec_module(module)
+    return module
 
 
 def droplet(contact_angle, bond=0.0, *, quadrature=None, hold="none", **mesh):

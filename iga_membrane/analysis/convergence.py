@@ -15,12 +15,13 @@ import numpy as np
 
 from ..checks import choice, integer, number
 from ..errors import OutputError, SceneError
-from ..scenes.liquid import Discretization, Model
+from ..scenes.liquid import Discretization, Model, space_name
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
 from ..solver.solution import Solution
 from ..solver.solve import solve
 from ..solver.status import Status
+from ..splines import BasisOf
 
 COSTS = {"unknowns": "unknowns", "cpu": "CPU seconds", "memory": "peak memory, MB"}
 
@@ -202,7 +203,7 @@ class Study:
 def convergence_study(
     scene_of: Callable[[Discretization], Scene],
     *,
-    spaces: Sequence[tuple[str, int]] = (("bspline", 2), ("lagrange", 2)),
+    spaces: Sequence[tuple[str | BasisOf, int]] = (("bspline", 2), ("lagrange", 2)),
     elements: Sequence[int] = (4, 8, 16, 32),
     exact: Mapping[str, float],
     model: Model | None = None,
@@ -214,7 +215,8 @@ def convergence_study(
     Parameters
     ----------
     scene_of : discretization to scene.
-    spaces : pairs of "bspline", "nurbs" or "lagrange" and a degree (1 to 4, splines from 2).
+    spaces : pairs of "bspline", "nurbs", "lagrange" or a basis of your own
+        (:class:`Discretization`) and a degree (1 to 4, splines from 2).
     elements : along the main direction, coarse to fine.
     exact : measures (:attr:`Solution.measures`) and the values they should have.
     model : sector that is computed; the smallest the scene allows if omitted.
@@ -264,7 +266,7 @@ def _run(
     assert mesh.degree is not None
     assert mesh.elements is not None
     return Run(
-        mesh.space,
+        space_name(mesh.space),
         mesh.degree,
         mesh.elements,
         solution.status,

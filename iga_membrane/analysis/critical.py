@@ -47,6 +47,7 @@ def critical_value(
     measure : of its solution, ``lambda s: s.forces[0].effective[2]``.
     low, high : values between which the measure changes sign.
     tolerance : of the parameter, relative to ``high - low``.
+    options : of each solve.
 
     Raises
     ------

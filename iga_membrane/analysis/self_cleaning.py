@@ -67,6 +67,7 @@ def self_cleaning(
     friction : coefficient between particle and substrate, >= 0. A particle is lifted where the
         force of the liquid out of the substrate is more than its weight; otherwise it is dragged
         where the force along the substrate is more than friction times what presses it down.
+    options : of the solve.
 
     Raises
     ------

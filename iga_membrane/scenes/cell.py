@@ -23,7 +23,7 @@ from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
 from .foot import adhesion
-from .liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
+from .liquid import MODELS, Discretization, Liquid, Mesh, space_name, with_defaults
 from .scene import Ramp, Scene
 from .start import gathered
 
@@ -60,6 +60,9 @@ def asperity_cell(
     penetration_tolerance : depth over the radius beyond which a state is no success.
     contact_line : "trimmed", the membrane passes through the sphere; "adhesion", it lies on a
         sphere that attracts it, for angles near 180 degrees; "auto" chooses.
+    shape : "square" or "circle".
+    liquid : its surface tension counts; 1 by default.
+    discretization : space, degree, elements, model; all chosen by the scene if omitted.
 
     Raises
     ------
@@ -81,6 +84,11 @@ def asperity_cell(
         )
     along = size / r * (1.0 if shape == "square" else 0.5)
     mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * along)))
+    if mesh.space != "bspline":
+        raise SceneError(
+            f'discretization.space = "{space_name(mesh.space)}": not available yet in a cell; '
+            '"bspline" is'
+        )
     smallest = smallest_model(sphere, size, (0.0, 0.0))
     model = mesh.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import choice, number, record, vector
 from ..errors import SceneError
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import (
@@ -46,7 +46,7 @@ HOLDS = ("none", "x", "xy", "xyz")
 
 
 def sessile_droplet(
-    substrate: Plane | Sphere | SphereLattice | Spheres | None,
+    substrate: Solid | None,
     *,
     volume: float,
     liquid: Liquid | None = None,
@@ -68,8 +68,9 @@ def sessile_droplet(
 
     Parameters
     ----------
-    substrate : the solid with its contact angle; None for a droplet about the origin that touches
-        nothing but a particle.
+    substrate : the solid with its contact angle: ``Plane``, ``Sphere``, ``SphereLattice``,
+        ``Spheres``, or any ``Solid`` of your own at 180 degrees; None for a droplet about the
+        origin that touches nothing but a particle.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
@@ -102,7 +103,7 @@ def sessile_droplet(
     if substrate is None:
         # its particle carries it
         substrate, beside = seat_of(grains, hold), ()
-    record("substrate", substrate, Plane, Sphere, SphereLattice, Spheres)
+    record("substrate", substrate, Solid)
     check_fixed(substrate)
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
@@ -278,9 +279,7 @@ def _acceleration(gravity: Any) -> Array:
     return np.array(vector("gravity", gravity))
 
 
-def _frame(
-    substrate: Plane | Sphere | SphereLattice | Spheres, *, free: bool
-) -> tuple[tuple[float, float, float], Array]:
+def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:
     """Origin and axes of the scene: on the plane, at the top of the sphere, or those of a free
     droplet."""
     if free:
@@ -294,9 +293,7 @@ def _frame(
     return (x, y, z + substrate.radius), np.eye(3)
 
 
-def _hints(
-    substrate: Plane | Sphere | SphereLattice | Spheres, bond: Array, sector: Sector
-) -> tuple[str, ...]:
+def _hints(substrate: Solid, bond: Array, sector: Sector) -> tuple[str, ...]:
     texts = []
     angle = float(np.min(substrate.contact_angle))
     if angle <= np.pi:
@@ -314,7 +311,7 @@ def _hints(
 
 
 def _describe(
-    substrate: Plane | Sphere | SphereLattice | Spheres | None,
+    substrate: Solid | None,
     volume: float,
     liquid: Liquid,
     acceleration: Array,
@@ -338,9 +335,7 @@ def _describe(
     }
 
 
-def _describe_substrate(
-    substrate: Plane | Sphere | SphereLattice | Spheres | None,
-) -> dict[str, Any]:
+def _describe_substrate(substrate: Solid | None) -> dict[str, Any]:
     match substrate:
         case None:
             return {"kind": "none"}
@@ -375,3 +370,6 @@ def _describe_substrate(
                 "radii": np.asarray(substrate.radii).tolist(),
             }
             return spheres if substrate.base is None else spheres | {"base": substrate.base}
+        case _:
+            angle = np.asarray(substrate.contact_angle).tolist()
+            return {"kind": type(substrate).__name__, "contact_angle": angle}

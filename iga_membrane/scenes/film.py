@@ -33,10 +33,12 @@ def film_between_rings(
 
     Parameters
     ----------
+    half_height : > 0.
     radius : of both rings.
     liquid : its surface tension counts; there is no weight.
     volume : of the liquid between the rings, or
     pressure : liquid minus gas; with neither the film is a catenoid.
+    discretization : space, degree, elements, model; all chosen by the scene if omitted.
 
     Raises
     ------

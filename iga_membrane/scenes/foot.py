@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..splines import Grading, pillow_space, points_of
 from ..surface.closed import Stretch, closed_surface
 from ..surface.ring import axisymmetric, drop_space
@@ -24,9 +24,8 @@ from ..terms import (
     Term,
     TrimmedContactLine,
 )
-from ..terms.term import AnySolid
 from .asperities import ball, smallest_model, whole_skin
-from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .liquid import MODELS, Discretization, Liquid, Mesh, Model, space_name
 from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
 
@@ -35,7 +34,7 @@ from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pa
 class Question:
     """What a foot is built from (scene, units, Bond numbers along the axes)."""
 
-    substrate: Plane | Sphere | SphereLattice | Spheres
+    substrate: Solid
     asked: Discretization
     scale: Scale
     bond: Array
@@ -81,7 +80,15 @@ def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
     refused: tuple[str, ...] = ("trimmed", "adhesion")
-    if isinstance(solid, (SphereLattice, Spheres)):
+    if not isinstance(solid, (Plane, Sphere, SphereLattice, Spheres)):
+        refused = CONTACT_LINES[1:]
+        if np.min(solid.contact_angle) < 180.0:
+            raise SceneError(
+                f"substrate.contact_angle = {np.min(solid.contact_angle):g}: contact lines are "
+                "known on planes and spheres only; on a solid of your own the membrane lies, at "
+                "180 degrees"
+            )
+    elif isinstance(solid, (SphereLattice, Spheres)):
         refused = ("conforming",)
     elif isinstance(solid, Sphere):
         refused = ("adhesion",)
@@ -131,8 +138,8 @@ def _on_an_area(parts: Question) -> Foot:
     substrate, scale = parts.substrate, parts.scale
     if parts.asked.space != "bspline":
         raise SceneError(
-            f'discretization.space = "{parts.asked.space}": a membrane over its whole foot needs '
-            '"bspline"'
+            f'discretization.space = "{space_name(parts.asked.space)}": a membrane over its whole '
+            'foot needs "bspline"'
         )
     x, y, _ = (float(b) for b in parts.bond)
     tiny = 1e-14 * float(np.abs(parts.bond).max())
@@ -245,7 +252,7 @@ def _through(foot: Foot, parts: Question, pressure: float) -> Foot:
     return replace(foot, terms=[line], predictor=[below])
 
 
-def largest_radius(solid: AnySolid) -> float:
+def largest_radius(solid: Solid) -> float:
     """Of spheres; 0 for a plane."""
     return float(np.max(solid.radii if isinstance(solid, Spheres) else getattr(solid, "radius", 0)))
 
@@ -254,8 +261,9 @@ PREDICTABLE = 135.0, 175.0
 """Contact angles, in degrees, for which that start is good."""
 
 
-def with_angle(solid: AnySolid, angle: float) -> AnySolid:
+def with_angle(solid: Solid, angle: float) -> Solid:
     """The solid with contact angles of at least ``angle``."""
+    assert isinstance(solid, (Plane, Sphere, SphereLattice, Spheres))
     if isinstance(solid, Spheres):
         return replace(solid, contact_angle=np.maximum(solid.contact_angle, angle))
     return replace(solid, contact_angle=max(solid.contact_angle, angle))

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from ..checks import choice, integer, number, record
 from ..errors import SceneError
+from ..splines import BasisOf
 
 Model = Literal["full", "half", "quarter", "eighth"]
 MODELS: tuple[Model, ...] = ("full", "half", "quarter", "eighth")
@@ -57,20 +58,22 @@ class Discretization:
 
     Attributes
     ----------
-    space : "bspline", "nurbs" (both C1 or smoother) or "lagrange" (C0).
+    space : "bspline", "nurbs" (both C1 or smoother) or "lagrange" (C0); or a function from the
+        number of elements and the degree to a :class:`Basis` on [0, 1], for the meridians.
     degree : 2 to 4, for "lagrange" 1 to 4.
     elements : along the main parameter direction; a droplet's ring has twice as many.
     model : "full", "half", "quarter", "eighth", or None for the smallest the scene allows.
     """
 
-    space: str = "bspline"
+    space: str | BasisOf = "bspline"
     degree: int | None = None
     elements: int | None = None
     model: Model | None = None
 
     def __post_init__(self) -> None:
-        choice("discretization.space", self.space, ("bspline", "nurbs", "lagrange"))
-        if self.space != "lagrange" and isinstance(self.degree, int) and self.degree < 2:
+        if not callable(self.space):
+            choice("discretization.space", self.space, ("bspline", "nurbs", "lagrange"))
+        if self.space in ("bspline", "nurbs") and isinstance(self.degree, int) and self.degree < 2:
             raise SceneError(
                 f"discretization.degree = {self.degree}: degree {self.degree} is not C1, C1 needed "
                 f'for curvature and contact lines: degree >= 2 in space "{self.space}"'
@@ -85,6 +88,11 @@ class Discretization:
     def mesh(self, *, degree: int = 4, elements: int = 20) -> Mesh:
         """The choices, with a scene's own where there are none."""
         return Mesh(self.space, self.degree or degree, self.elements or elements, self.model)
+
+
+def space_name(space: str | BasisOf) -> str:
+    """A space in a word."""
+    return space if isinstance(space, str) else getattr(space, "__name__", type(space).__name__)
 
 
 def with_defaults(
@@ -107,7 +115,7 @@ def with_defaults(
 class Mesh:
     """A :class:`Discretization` with every choice made, except perhaps the model."""
 
-    space: str
+    space: str | BasisOf
     degree: int
     elements: int
     model: Model | None
@@ -115,7 +123,7 @@ class Mesh:
     def described(self, model: str) -> dict[str, Any]:
         """By the names of the scene file."""
         return {
-            "space": self.space,
+            "space": space_name(self.space),
             "degree": self.degree,
             "elements": self.elements,
             "model": model,

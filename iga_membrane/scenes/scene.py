@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Solid, Sphere
 from ..splines import Grading
 from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
@@ -19,7 +19,9 @@ from ..terms import (
     Centroid,
     Constraint,
     Contact,
+    GapTerm,
     LineTerm,
+    LocalGap,
     PlaneContactLine,
     Scale,
     SphereContactLine,
@@ -149,7 +151,7 @@ class Scene:
     start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     free_particles: FreeParticles | None = field(default=None, repr=False)
-    substrate: Plane | Sphere | SphereLattice | Spheres | None = None
+    substrate: Solid | None = None
     particles: Sequence[Sphere] = ()
     hold: str = ""
     acceleration: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -179,6 +181,7 @@ class Scene:
                     "degrees, where the foot is a contact area; build the scene by "
                     "sessile_droplet or liquid_sheet, or hold the edge by Fixed"
                 )
+        self._check_gaps()
         if "surface_tension" not in names:
             raise SceneError("terms: a membrane needs a SurfaceTension")
         if self.scale is None:
@@ -186,6 +189,19 @@ class Scene:
             object.__setattr__(self, "scale", Scale(self.surface.size, tension))
 
         self._check_mirrors()
+
+    def _check_gaps(self) -> None:
+        """Refuse a law of the gap where its variations are not known."""
+        name = next((t.name for t in self.terms if isinstance(t, GapTerm)), None)
+        if name is not None and self.motion != "spines":
+            raise SceneError(f'terms: "{name}" needs motion = "spines"')
+        lines = [t.name for t in self.terms if isinstance(t, (LineTerm, TrimmedContactLine))]
+        if name is not None and lines:
+            raise SceneError(
+                f'terms: "{name}" changes the tension at the contact line "{lines[0]}", which is '
+                "not available yet; a law of the gap needs fixed edges, or a membrane that lies on "
+                "its substrate (180 degrees)"
+            )
 
     def _check_mirrors(self) -> None:
         """Refuse a model whose mirror planes the terms do not have."""
@@ -203,6 +219,23 @@ class Scene:
                     f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
                     "model here"
                 )
+        here = self.units.to_local(self.surface.points)
+        for term in self.local_terms():
+            for k, axis in enumerate("xyz"):
+                if isinstance(term, LocalGap) and axis in mirrored:
+                    there = here * np.where(np.arange(3) == k, -1.0, 1.0)
+                    self._check_mirror(term, here, there, axis)
+            if isinstance(term, LocalGap) and model == "eighth":
+                self._check_mirror(term, here, here[:, [1, 0, 2]], "x = y")
+
+    def _check_mirror(self, term: LocalGap, here: Array, there: Array, plane: str) -> None:
+        """Refuse a law of the gap to a solid without a mirror plane of the model."""
+        off = np.abs(term.at(there).at.gap - term.at(here).at.gap).max()
+        if not off <= 1e-9:
+            raise SceneError(
+                f'terms: the solid of "{term.name}" has no mirror plane for {plane}, the '
+                f'"{self.sector.model}" model has: take a larger model'
+            )
 
     @property
     def line_inside(self) -> str | None:

@@ -42,6 +42,10 @@ class SceneFile:
 def load_scene(path: str | Path) -> SceneFile:
     """Read a scene file (.toml or .json).
 
+    Parameters
+    ----------
+    path : of the file.
+
     Raises
     ------
     SceneError

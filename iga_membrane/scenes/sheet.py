@@ -82,6 +82,8 @@ def liquid_sheet(
         rim and passes through the particle; "auto" is conforming.
     membrane : the paper's formulation, which covers the wetted part of the particle too, instead
         of a contact line as the sheet's edge; without pressure, volume and weight of the liquid.
+    liquid : surface tension and density; both 1 by default.
+    discretization : space, degree, elements, model; all chosen by the scene if omitted.
 
     Raises
     ------
@@ -282,7 +284,7 @@ def _space(particle: Sphere | None, boundary: str, mesh: Mesh) -> Space:
         return ring_space(mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=corners)
     if boundary == "circle":
         return drop_space(mesh.space, mesh.degree, mesh.elements)
-    kind = "lagrange" if mesh.space == "lagrange" else "bspline"
+    kind = "bspline" if mesh.space == "nurbs" else mesh.space
     return flat_square(1.0, elements=mesh.elements, degree=mesh.degree, space=kind).space
 
 

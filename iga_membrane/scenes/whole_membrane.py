@@ -35,7 +35,7 @@ from ..terms import (
     SurfaceTension,
     Term,
 )
-from .liquid import Discretization, Liquid, Mesh
+from .liquid import Discretization, Liquid, Mesh, space_name
 from .scene import Ramp, Scene
 from .start import Pancake, funnel, least_energy_pancake
 
@@ -199,8 +199,8 @@ def _check(mesh: Mesh, sector: Sector, contact_angle: float) -> None:
         )
     if mesh.space != "bspline":
         raise SceneError(
-            f'discretization.space = "{mesh.space}": not available yet with solver.contact_line = '
-            '"line_load"; "bspline" is'
+            f'discretization.space = "{space_name(mesh.space)}": not available yet with '
+            'solver.contact_line = "line_load"; "bspline" is'
         )
     if sector.model not in ("quarter", "eighth"):
         raise SceneError(

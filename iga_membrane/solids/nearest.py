@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from ..arrays import Array, Index
+from ..arrays import Array, Index, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,31 +19,52 @@ class Nearest:
     ----------
     gap : (...) distance to it, positive outside: paper eq. (24).
     normal : (..., 3) gradient of the gap, out of the solid: eq. (27).
-    bend : (...) the gap's Hessian is ``bend (1 - n n)``: one over the distance from the centre.
-    which : (...) number of the sphere, -1 for a plane.
+    bend : (...) the smaller principal curvature of the surface through the point that has the same
+        gap everywhere: 0 over a plane, one over the distance from the centre of a sphere.
+    which : (...) number of the body (sphere, pillar) that is nearest, -1 for a plane.
+    ridge : (..., 3) or None where both curvatures are the same: a vector along the direction of the
+        larger one, whose squared length is their difference. The gap's Hessian is
+        ``bend (1 - n n) + ridge ridge``.
     """
 
     gap: Array
     normal: Array
     bend: Array
     which: Index
+    ridge: Array | None = None
+
+    def hessian(self) -> Array:
+        """(..., 3, 3) second derivative of the gap."""
+        n, v = self.normal, self.ridge
+        across = np.eye(3) - n[..., :, None] * n[..., None, :]
+        found = self.bend[..., None, None] * across
+        return np.asarray(found if v is None else found + v[..., :, None] * v[..., None, :])
 
 
+@runtime_checkable
 class Solid(Protocol):
-    """Something that a membrane cannot enter."""
+    """Something that a membrane cannot enter: what an own substrate must answer.
+
+    All lengths are in the user's units, all points in world coordinates.
+    """
+
+    @property
+    def contact_angle(self) -> float | Sequence[float] | Array:
+        """Young's angle in degrees through the liquid; one, or one for each body."""
 
     @property
     def scale(self) -> float:
-        """Length over which contact changes."""
+        """Length over which contact changes, as the radius of an asperity. The default mesh has
+        about three elements along it."""
 
     def nearest(self, points: Array) -> Nearest:
         """Gap and its derivatives at points (..., 3)."""
 
     def center_of(self, which: Index) -> Array:
-        """(..., 3) centres of spheres by their numbers."""
+        """(..., 3) a point inside each body, by their numbers: the centres of spheres."""
 
     def radius_of(self, which: Index) -> Array:
-        """(...) radii of spheres by their numbers."""
+        """(...) radii of spheres by their numbers; infinite for other bodies."""
 
 
 class Asperities(Solid, Protocol):
@@ -69,4 +91,13 @@ def closer(first: Nearest, second: Nearest) -> Nearest:
         np.where(wins[..., None], second.normal, first.normal),
         np.where(wins, second.bend, first.bend),
         np.where(wins, second.which, first.which),
+        _ridge(wins, first, second),
     )
+
+
+def _ridge(wins: Mask, first: Nearest, second: Nearest) -> Array | None:
+    if first.ridge is None and second.ridge is None:
+        return None
+    none = np.zeros_like(first.normal)
+    one, two = (none if each.ridge is None else each.ridge for each in (first, second))
+    return np.where(wins[..., None], two, one)

@@ -12,7 +12,7 @@ from ..scenes.scene import Scene
 from ..surface.cartesian import Cartesian
 from ..surface.motion import Motion
 from ..surface.surface import Surface
-from ..terms import BodyDensity, pairs
+from ..terms import BodyDensity, gap, pairs
 from ..terms import variations as vary
 from . import inside_lines
 from .functional import Energies, Functional
@@ -155,6 +155,8 @@ class Assembly(Functional):
         total = FirstOrder(self.rows, directions, self.multipliers)
         for rows, part in self.parts(points, at):
             total.add(vary.forces(rows, part, self.tension, self.body), rows.functions)
+            for law in self.gaps:
+                total.add(gap.forces(rows, part, law.at(part.x)), rows.functions)
             for k, held in enumerate(self.held):
                 total.constrain(k, vary.forces(rows, part, 0.0, held), rows.functions)
         if self.trim is not None:
@@ -180,6 +182,8 @@ class Assembly(Functional):
             for rows, part in self.parts(points, at):
                 along = directions[rows.functions]
                 blocks = vary.hessian(rows, part, self.tension, body, along, self._kernels)
+                for law in self.gaps:
+                    blocks += gap.hessian(rows, part, law.at(part.x), along, self._kernels)
                 matrix.add(unknowns(rows.functions), blocks)
         if self.trim is not None:
             inside_lines.add_hessian(

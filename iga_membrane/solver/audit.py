@@ -23,6 +23,7 @@ from ..surface.surface import Surface
 from ..terms import (
     BodyDensity,
     LineTerm,
+    LocalGap,
     NormalLineLoad,
     Pressure,
     SurfaceTension,
@@ -101,14 +102,21 @@ def audit(
     tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
-    inside = 0.0
+    inside, lift, lowest = 0.0, 0.0, np.inf
     for first in range(0, len(whole.functions), AT_A_TIME):
         table = whole.part(slice(first, first + AT_A_TIME))
         k = surface.on(table)
         area = k.area_element * table.weights
         # int gamma a^alpha . u_,alpha dA + int e u . n dA: membrane and pressure
-        dual = tension * area[..., None, None] * k.dual_tangents
+        # and int f a^alpha . u_,alpha + f' grad(gap) . u dA: laws of the gap
+        laws = [term.at(k.position) for term in terms if isinstance(term, LocalGap)]
+        taut = area * (tension + sum(law.value for law in laws))
+        dual = taut[..., None, None] * k.dual_tangents
         load = (_density(body, k.position) * area)[..., None] * k.normal
+        for law in laws:
+            load += area[..., None] * law.pull
+            lift += sector.copies * float((law.pull[..., 2] * area).sum())
+            lowest = min(lowest, float(law.at.gap.min()))
         force = (
             table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
             + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
@@ -139,7 +147,7 @@ def audit(
             cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) - young
             volume = missing_volume(terms, inside)
             return Audit(residual, volume, angle=cosine, penetration=depth)
-        missing = abs(carried + weight) / max(abs(weight), abs(carried), TINY)
+        missing = abs(carried + weight + lift) / max(abs(weight), abs(carried), TINY)
         if not stands_free(scene):
             return Audit(residual, missing_volume(terms, inside), penetration=depth, deepest=place)
         loose = [axis not in sector.mirrored for axis in "xy"]
@@ -149,7 +157,8 @@ def audit(
         volume = missing_volume(terms, inside)
         return Audit(residual, volume, missing, sideways, penetration=depth, deepest=place)
     if not lines:
-        return Audit(residual, missing_volume(terms, inside))
+        depth = max(0.0, -lowest) / surface.size
+        return Audit(residual, missing_volume(terms, inside), penetration=depth)
     line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
     cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
     free = not any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports)

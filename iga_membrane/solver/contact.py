@@ -163,8 +163,8 @@ class ContactSet:
         up[..., 2] = 1.0
         at = Nearest(x[..., 2] - top, up, none, np.full(x.shape[:-1], -1))
         near = self.solid.nearest(x[low])
-        for known, exact in zip(vars(at).values(), vars(near).values(), strict=True):
-            known[low] = exact
+        for name in ("gap", "normal", "bend", "which"):
+            getattr(at, name)[low] = getattr(near, name)
         return at
 
     def gained(self, points: Array) -> float:
@@ -204,6 +204,10 @@ class ContactSet:
         u = rows * (at.normal[near] @ d.transpose(0, 2, 1))
         blocks = (u * (stiff + bent)[..., None]).transpose(0, 2, 1) @ u
         blocks -= (rows * bent[..., None]).transpose(0, 2, 1) @ rows * (d @ d.transpose(0, 2, 1))
+        if at.ridge is not None:
+            across = rows * (at.ridge[near] @ d.transpose(0, 2, 1))
+            load = (self.area * (touch.traction - touch.pull))[near]
+            blocks -= (across * load[..., None]).transpose(0, 2, 1) @ across
         return near, blocks
 
     def stiffness(self, touch: Touch) -> Array:
@@ -219,7 +223,7 @@ class ContactSet:
                 "discretization.elements"
             )
         held = touch.traction > 0.0
-        if self.exact or not (touch.at.bend[held] > 0.0).any():
+        if self.exact or not (touch.at.which[held] >= 0).any():
             return None
         each = held.sum() / len(np.unique(touch.at.which[held]))
         if each < POINTS:
@@ -230,8 +234,8 @@ class ContactSet:
         return None
 
     def across(self, touch: Touch) -> float:
-        """Fewest elements across the smallest sphere, where the membrane lies on one."""
-        wet = (touch.traction > 0).any(axis=1) & (touch.at.bend > 0).any(axis=1)
+        """Fewest elements across the smallest asperity, where the membrane lies on one."""
+        wet = (touch.traction > 0).any(axis=1) & (touch.at.which >= 0).any(axis=1)
         if not wet.any():
             return np.inf
         step = float(np.sqrt(self._size[wet].max()))

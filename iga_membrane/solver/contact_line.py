@@ -44,8 +44,10 @@ def contact_line(
 
     Parameters
     ----------
+    surface : of a solution, in world coordinates.
     edge : of the patch, or a line inside it ("xi2=0.25"), there of the part behind it.
     solid : what the edge lies on; None is the plane z = 0.
+    points : Gauss points along each element of the edge.
     """
     space = surface.space
     along, place = space.edge_place(edge)

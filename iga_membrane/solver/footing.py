@@ -160,7 +160,9 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
     -----
     A round spot whose edge the membrane leaves at ``psi = pi - theta`` carries
     ``pi a^2 p + 2 pi a gamma sin(phi - psi)``, ``a = r sin(phi)``; at 180 degrees its projected
-    area is the force over ``p + 2 gamma / r``. That is far more accurate than counting points.
+    area is the force over ``p + 2 gamma / r``. That is far more accurate than counting points. On
+    asperities that are no spheres every point's force counts over ``p`` and ``gamma`` times the sum
+    of the surface's curvatures there.
     """
     contact = assembly.contact
     assert contact is not None
@@ -180,17 +182,25 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
     if on_sphere.any():
         centers[on_sphere] = contact.solid.center_of(which[on_sphere])
         radii[on_sphere] = contact.solid.radius_of(which[on_sphere])
+    ball = on_sphere & np.isfinite(radii)
     size = np.linalg.norm(forces, axis=1)
-    level = centers[:, 2] + np.where(on_sphere, radii, 0.0)
+    radius = np.where(ball, radii, 0.0)
+    level = centers[:, 2] + radius
     pressure = -(body.constant + body.gradient[2] * level)
     psi = np.arccos(1.0 - contact.adhesion / assembly.tension)
     carried = np.where(forces[:, 2] > 0, -size, size) / (np.pi * assembly.tension)
-    share = np.where(on_sphere, _share(pressure / assembly.tension, radii, carried, psi), 0.0)
-    ball = np.where(on_sphere, radii, 0.0)
-    projected = np.where(on_sphere, share * np.pi * ball**2, size / pressure)
-    areas = np.where(on_sphere, 2.0 * np.pi * ball**2 * (1.0 - np.sqrt(1.0 - share)), projected)
+    share = np.where(ball, _share(pressure / assembly.tension, radii, carried, psi), 0.0)
+    projected = np.where(ball, share * np.pi * radius**2, size / pressure)
+    areas = np.where(ball, 2.0 * np.pi * radius**2 * (1.0 - np.sqrt(1.0 - share)), projected)
+    if (on_sphere & ~ball).any():
+        bent = 2.0 * touch.at.bend[wet]
+        if touch.at.ridge is not None:
+            bent += (touch.at.ridge[wet] ** 2).sum(axis=-1)
+        load = assembly.tension * bent - (body.constant + x @ np.array(body.gradient))
+        each = np.tile(np.linalg.norm(push, axis=-1) / load, len(images))
+        areas = np.where(on_sphere & ~ball, np.bincount(inverse, each, len(which)), areas)
     polar = np.arcsin(np.sqrt(share))
-    heights = centers[:, 2] + ball * np.cos(polar)
+    heights = centers[:, 2] + radius * np.cos(polar)
     angles = np.full(len(which), 180.0 - np.degrees(psi))
     return Footing(which, centers, forces, radii, projected, areas, polar, heights, angles)
 

@@ -16,7 +16,7 @@ from ..surface.motion import Motion, Spines
 from ..surface.sector import sector_table
 from ..surface.supports import Sliding, Support
 from ..surface.surface import Surface
-from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, Stabilization
+from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LocalGap, Stabilization, gap
 from ..terms import variations as vary
 from .edge_lines import EdgeLines
 from .meeting import contact_of, law_of, line_of, same_law, trim_of
@@ -110,6 +110,7 @@ class Functional:
             self.rows = Rows(self.spines, self.table)
         self.constraints = [t for t in terms if isinstance(t, Constraint)]
         self.tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+        self.gaps = [t for t in terms if isinstance(t, LocalGap)]
         self._bodies = [
             t.density() for t in terms if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
         ]
@@ -194,6 +195,7 @@ class Functional:
     def energies_at(self, points: Array, at: vary.ElementPoints) -> Energies:
         """The same, its geometry at the quadrature points being known."""
         total, constraints = self.values(points, at)
+        total += sum(gap.energy(self.table, at, law.at(at.x)) for law in self.gaps)
         if self.contact is not None:
             total += self.contact.energy(self.contact.touch(points))
         if self.stabilizer is not None:

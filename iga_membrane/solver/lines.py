@@ -35,6 +35,10 @@ class LineOnSolid:
 def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     """Contact lines of a solution.
 
+    Parameters
+    ----------
+    solution : converged or not.
+
     Returns
     -------
     One for each solid that has a line, in the order of their numbers; none where the membrane lies

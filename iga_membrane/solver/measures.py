@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Sphere, SphereLattice, Spheres
+from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import (
     BodyDensity,
@@ -145,7 +145,8 @@ def _on_solids(
     base = base_area(scene, found) + known / scale.length**2
     foot = float(np.sqrt(base / np.pi))
     angles = {}
-    if isinstance(scene.substrate, (SphereLattice, Spheres)) and base > 0:
+    rough = isinstance(scene.substrate, (SphereLattice, Spheres))
+    if rough and base > 0:
         height = float(top[2])
         young = float(found.angles @ found.areas / found.areas.sum())
         angles = {
@@ -154,6 +155,9 @@ def _on_solids(
                 float(found.areas.sum()), float(found.projected.sum()), base, young
             ),
         }
+    # how far an own pattern of asperities reaches is not known
+    if rough or isinstance(scene.substrate, (Plane, Sphere)):
+        angles["contact_radius"] = foot * scale.length
     return angles | {
         "A_LG": values["A_LG"] - lying,
         "A_wet": wet + known,
@@ -161,7 +165,6 @@ def _on_solids(
         "equator_radius": _width(surface) * scale.length,
         "p_apex": -(body.constant + float(np.dot(body.gradient, top))) * scale.pressure,
         "p_base": -body.constant * scale.pressure,
-        "contact_radius": foot * scale.length,
     }
 
 

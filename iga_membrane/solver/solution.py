@@ -46,6 +46,9 @@ class Solution:
     volume_error : of a prescribed volume, relative.
     progress : of load stepping that stopped short; a state file keeps it, and a solve that starts
         from that file goes on there.
+    unknowns : their number.
+    warnings : what the user should know.
+    kind : of a status that has several, as TOPOLOGY_CHANGE.
     """
 
     scene: Scene

@@ -45,6 +45,7 @@ def solve(
 
     Parameters
     ----------
+    scene : what is asked.
     options : tolerances and limits.
     on_fail : "raise" a :class:`SolveError` that carries the solution, or "return" it.
     report : called with every load reached, for progress.

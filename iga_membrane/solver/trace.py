@@ -98,6 +98,7 @@ def trace(
     on_fail : "raise" a :class:`SolveError` with the last good state if the path stops short, or
         "return" the path as far as it came.
     report : called with the part of the path reached.
+    options : tolerances and limits of the whole path.
 
     Raises
     ------

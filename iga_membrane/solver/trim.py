@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index, Mask
+from ..solids import Solid
 from ..splines import LineTable, Space, Table, cut, faces_between
 from ..surface.bezier import BezierPatches, bezier_net
 from ..surface.surface import Surface
 from ..terms import BodyDensity, TrimmedContactLine
-from ..terms.term import AnySolid
 from ..terms.trimmed import CapDensity, Line, on_line, wet_integral
 from ..terms.variations import flux
 from .ties import Ties
@@ -92,7 +92,7 @@ class Trim:
         self._known.clear()
 
     @property
-    def solid(self) -> AnySolid:
+    def solid(self) -> Solid:
         """That the membrane passes through."""
         return self.term.solid
 

@@ -2,6 +2,7 @@
 
 from .basis import (
     Basis,
+    BasisOf,
     bspline_basis,
     lagrange_basis,
     line_basis,
@@ -20,6 +21,7 @@ from .table import EdgeTable, LineTable, Table
 
 __all__ = [
     "Basis",
+    "BasisOf",
     "Cut",
     "EdgeTable",
     "Faces",

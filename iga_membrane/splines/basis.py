@@ -7,7 +7,7 @@ live on which element, so everything above sees one class.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -34,7 +34,7 @@ class Basis:
     continuity : continuous derivatives at element boundaries.
     periodic : whether the ends of the domain are joined.
     joints : parameters inside the domain where patches meet, with continuity 0.
-    knots : the clamped knot vector of a B-spline basis on a line, else None.
+    knots : (n + p + 1,) the clamped knot vector of a B-spline basis on a line, else None.
     """
 
     degree: int
@@ -126,6 +126,12 @@ class Basis:
 def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basis:
     """B-splines on a clamped knot vector.
 
+    Parameters
+    ----------
+    knots : not decreasing, the first and the last ``degree + 1`` times.
+    degree : 1 or more, above the continuity.
+    continuity : that is needed at inner knots.
+
     Raises
     ------
     SceneError
@@ -173,7 +179,15 @@ def periodic_basis(
 
     Parameters
     ----------
+    elements : more than the degree.
+    degree : 2 or more.
+    length : of the ring.
     joints : elements at whose start patches meet with continuity 0.
+
+    Raises
+    ------
+    SceneError
+        A degree below 2, or too few elements.
     """
     if degree < 2:
         raise SceneError(f"degree {degree} is not C1: C1 needed, so degree >= 2 (got {degree})")
@@ -203,7 +217,19 @@ def periodic_basis(
 
 
 def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) -> Basis:
-    """Lagrange polynomials on equidistant nodes of each element: C0, degree 1 to 4."""
+    """Lagrange polynomials on equidistant nodes of each element: C0, degree 1 to 4.
+
+    Parameters
+    ----------
+    breaks : (elements + 1,) ends of the elements.
+    degree : 1 to 4.
+    periodic : whether the ends of the domain are joined.
+
+    Raises
+    ------
+    SceneError
+        Another degree.
+    """
     if not 1 <= degree <= 4:
         raise SceneError(f"degree = {degree}: a lagrange space has degree 1 to 4")
     t = np.asarray(breaks, float)
@@ -220,14 +246,29 @@ def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) ->
     return Basis(degree, t, operators, functions, abscissae, 0, periodic)
 
 
-def line_basis(kind: str, elements: int, degree: int, joints: Sequence[int] = ()) -> Basis:
-    """Uniform basis on [0, 1].
+BasisOf = Callable[[int, int], Basis]
+"""A spline space of one's own: number of elements and degree to a basis on [0, 1]."""
+
+
+def line_basis(
+    kind: str | BasisOf, elements: int, degree: int, joints: Sequence[int] = ()
+) -> Basis:
+    """Basis on [0, 1].
 
     Parameters
     ----------
-    kind : "bspline" (of full smoothness) or "lagrange".
+    kind : "bspline" (of full smoothness) or "lagrange" on equal elements, or a function from the
+        number of elements and the degree to a basis.
     joints : inner elements at whose start splines have continuity 0.
+    elements, degree : of the basis.
+
+    Raises
+    ------
+    SceneError
+        If a function returns no basis on [0, 1], or has no place for joints.
     """
+    if callable(kind):
+        return _own_basis(kind, elements, degree, joints)
     breaks = np.linspace(0.0, 1.0, elements + 1)
     if kind == "lagrange":
         return lagrange_basis(breaks, degree)
@@ -238,11 +279,44 @@ def line_basis(kind: str, elements: int, degree: int, joints: Sequence[int] = ()
     return replace(bspline_basis(knots, degree, continuity=0), continuity=degree - 1, joints=kinks)
 
 
+def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int]) -> Basis:
+    """A basis of the user's, or an error that says what is wrong with it."""
+    name = getattr(kind, "__name__", type(kind).__name__)
+    if joints:
+        raise SceneError(f'discretization.space = {name}: has no joints; take "bspline" here')
+    basis = kind(elements, degree)
+    if not isinstance(basis, Basis):
+        raise SceneError(
+            f"discretization.space = {name}: {name}({elements}, {degree}) must return a Basis, got "
+            f"{type(basis).__name__}"
+        )
+    if basis.periodic or basis.breaks[0] != 0.0 or basis.breaks[-1] != 1.0:
+        raise SceneError(
+            f"discretization.space = {name}: its elements reach from {basis.breaks[0]:g} to "
+            f"{basis.breaks[-1]:g}, a meridian from 0 to 1 is needed"
+        )
+    ends = basis.matrix([0.0, 1.0])
+    if not (np.isclose(ends[0, 0], 1.0) and np.isclose(ends[1, -1], 1.0)):
+        raise SceneError(
+            f"discretization.space = {name}: its first and last function must be 1 at the ends, as "
+            "those of a clamped knot vector are"
+        )
+    return basis
+
+
 def ring_basis(
     kind: str, elements: int, degree: int, length: float, joints: Sequence[int] = ()
 ) -> Basis:
     """Uniform basis on a ring of circumference ``length``; ``joints`` as in
-    :func:`periodic_basis`."""
+    :func:`periodic_basis`.
+
+    Parameters
+    ----------
+    kind : "bspline" or "lagrange".
+    elements, degree : of the basis.
+    length : of the ring.
+    joints : as in :func:`periodic_basis`.
+    """
     if kind == "lagrange":
         return lagrange_basis(np.linspace(0.0, length, elements + 1), degree, periodic=True)
     return periodic_basis(elements, degree, length, joints)

@@ -31,6 +31,15 @@ def close_pole(space: Space) -> Space:
 
     The result has the control points of the remaining rings, ring point ``(i, j)`` at number
     ``i * rings + j``, then three at a C1 pole (one at the C0 pole of a Lagrange space).
+
+    Parameters
+    ----------
+    space : whose first direction is a ring.
+
+    Raises
+    ------
+    SceneError
+        If the first direction is no ring.
     """
     if not space.bases[0].periodic:
         raise SceneError("a pole closes a ring: the first basis must be periodic")

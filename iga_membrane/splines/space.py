@@ -235,6 +235,11 @@ _ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 def tensor_space(one: Basis, two: Basis, weights: ArrayLike | None = None) -> Space:
     """Tensor product of two bases, rational if weights are given.
 
+    Parameters
+    ----------
+    one, two : bases of xi1 and xi2.
+    weights : (n1, n2) > 0, or None.
+
     Raises
     ------
     SceneError

@@ -89,8 +89,9 @@ class Table:
         return value, d1, d2
 
     def weighted(self, share: Array) -> Table:
-        """The same points, each element with a share (elements,) of its weight."""
-        other = replace(self, weights=self.weights * share[:, None])
+        """The same points, each element with a share (elements,) of its weight, or each point with
+        its own (elements, points)."""
+        other = replace(self, weights=self.weights * share.reshape(len(share), -1))
         other.__dict__["stacked"] = self.stacked
         return other
 

@@ -20,6 +20,10 @@ from .surface import Surface
 def from_geomdl(surface: Any) -> Surface:
     """Surface from a ``geomdl.BSpline.Surface`` or ``geomdl.NURBS.Surface``.
 
+    Parameters
+    ----------
+    surface : of geomdl.
+
     Raises
     ------
     SceneError
@@ -44,6 +48,10 @@ def from_geomdl(surface: Any) -> Surface:
 
 def to_geomdl(surface: Surface) -> Any:
     """``geomdl.NURBS.Surface`` (or ``BSpline.Surface`` without weights) of any surface.
+
+    Parameters
+    ----------
+    surface : of any space.
 
     Notes
     -----

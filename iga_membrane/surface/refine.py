@@ -40,6 +40,7 @@ def elevated(surface: Surface, by: int = 1) -> Surface:
 
     Parameters
     ----------
+    surface : on clamped B-splines in both directions.
     by : degrees to add, >= 0.
     """
     bases, operators = [], []

@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..splines import (
     Basis,
+    BasisOf,
     Space,
     close_pole,
     line_basis,
@@ -26,7 +27,7 @@ from .surface import Surface
 
 
 def ring_space(
-    kind: str,
+    kind: str | BasisOf,
     degree: int,
     elements: int,
     sectors: int = 8,
@@ -40,7 +41,9 @@ def ring_space(
 
     Parameters
     ----------
-    kind : "bspline", "nurbs" or "lagrange".
+    degree : of both directions.
+    kind : "bspline", "nurbs" or "lagrange", or a basis of your own for the meridian
+        (:func:`line_basis`); the ring is then of B-splines.
     elements : along the meridian; the ring has twice as many, rounded up to whole sectors.
     sectors : the ring's elements are a multiple of it.
     angle : "nurbs": opening (radians) of the arc that the weights make exact along the meridian.
@@ -58,7 +61,8 @@ def ring_space(
         around = max(around, sectors * -(-(degree + 1) // sectors))
     joints = [around // 8 * k for k in (1, 3, 5, 7)] if corners else []
     ring = ring_basis(polynomial, around, degree, 2.0 * np.pi, joints)
-    meridian = line_basis(polynomial, elements, degree, () if kink is None else (kink,))
+    along = kind if callable(kind) else polynomial
+    meridian = line_basis(along, elements, degree, () if kink is None else (kink,))
     weights = None
     if kind == "nurbs":
         weights = np.broadcast_to(arc_weights(meridian, angle), (ring.count, meridian.count))
@@ -66,7 +70,7 @@ def ring_space(
 
 
 def drop_space(
-    kind: str,
+    kind: str | BasisOf,
     degree: int,
     elements: int,
     sectors: int = 8,
@@ -132,6 +136,7 @@ def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Ar
 
     Parameters
     ----------
+    space : of a ring patch, open or closed by a pole.
     profile : ``t -> (r, z, dr/dt)`` along ``xi2``; at a pole (t = 1) ``r = 0`` and ``dz/dt = 0``.
     """
     points, matrix = meridian_interpolation(space)

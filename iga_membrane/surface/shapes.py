@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..splines import (
     Basis,
+    BasisOf,
     bspline_basis,
     line_basis,
     open_knots,
@@ -53,7 +54,12 @@ def revolution(basis: Basis, profile: ArrayLike, weights: Array) -> Surface:
 
 
 def sphere(radius: float = 1.0) -> Surface:
-    """Exact sphere about the origin, outward normal, poles on the z axis."""
+    """Exact sphere about the origin, outward normal, poles on the z axis.
+
+    Parameters
+    ----------
+    radius : > 0.
+    """
     basis, points, weights = arc(-0.5 * np.pi, 0.5 * np.pi)
     return revolution(basis, radius * points, weights)
 
@@ -64,6 +70,7 @@ def cap(radius: float, contact_angle: float) -> Surface:
     Parameters
     ----------
     radius : of the sphere.
+    contact_angle : in degrees, inside.
     """
     theta = np.radians(contact_angle)
     basis, points, weights = arc(0.5 * np.pi - theta, 0.5 * np.pi)
@@ -71,23 +78,37 @@ def cap(radius: float, contact_angle: float) -> Surface:
 
 
 def cylinder(radius: float, height: float) -> Surface:
-    """Exact open cylinder about the z axis from z = 0 to ``height``, outward normal."""
+    """Exact open cylinder about the z axis from z = 0 to ``height``, outward normal.
+
+    Parameters
+    ----------
+    radius, height : lengths > 0.
+    """
     basis = bspline_basis([0.0, 0.0, 1.0, 1.0], 1, continuity=0)
     return revolution(basis, [[radius, 0.0], [radius, height]], np.ones(2))
 
 
 def disc(radius: float) -> Surface:
-    """Exact flat disc in z = 0, normal up."""
+    """Exact flat disc in z = 0, normal up.
+
+    Parameters
+    ----------
+    radius : > 0.
+    """
     basis = bspline_basis([0.0, 0.0, 1.0, 1.0], 1, continuity=0)
     return revolution(basis, [[radius, 0.0], [0.0, 0.0]], np.ones(2))
 
 
-def sheet(size: float, *, elements: int = 8, degree: int = 3, space: str = "bspline") -> Surface:
+def sheet(
+    size: float, *, elements: int = 8, degree: int = 3, space: str | BasisOf = "bspline"
+) -> Surface:
     """Flat square sheet centred in z = 0, normal up, edges parallel to x and y.
 
     Parameters
     ----------
     size : edge length.
+    elements, degree : along both directions.
+    space : "bspline" or "lagrange", or a basis of your own (:func:`line_basis`).
     """
     basis = line_basis(space, elements, degree)
     product = tensor_space(basis, basis)

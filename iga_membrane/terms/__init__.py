@@ -3,6 +3,7 @@
 from .contact import Contact
 from .contact_line import PlaneContactLine
 from .edge_gap import EdgeGap
+from .gap import GapTerm, LocalGap
 from .gravity import Gravity
 from .line_load import NormalLineLoad
 from .sphere_wetting import SphereContactLine
@@ -20,8 +21,10 @@ __all__ = [
     "Constraint",
     "Contact",
     "EdgeGap",
+    "GapTerm",
     "Gravity",
     "LineTerm",
+    "LocalGap",
     "NormalLineLoad",
     "PlaneContactLine",
     "Pressure",

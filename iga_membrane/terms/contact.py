@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..checks import number
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Solid
 from .term import Scale, Term
 
 
@@ -19,7 +19,7 @@ class Contact(Term):
 
     Attributes
     ----------
-    solid : plane, sphere, lattice or list of spheres.
+    solid : plane, sphere, lattice or list of spheres, or one of the user's own.
     penalty : None holds the gap exactly; else the traction per depth of paper eq. (24), which lets
         the membrane sink in.
     depth : how deep the membrane may dip into the solid between contact points, over the radius
@@ -29,7 +29,7 @@ class Contact(Term):
         the membrane at one point.
     """
 
-    solid: Plane | Sphere | SphereLattice | Spheres
+    solid: Solid
     penalty: float | None = None
     depth: float = 1e-2
     adhesion: float = 0.0

@@ -12,8 +12,9 @@ from .term import BodyDensity, BodyTerm, Scale
 
 @dataclass(frozen=True)
 class Gravity(BodyTerm):
-    """Potential energy ``-rho g . x`` per volume, zero at the origin: the hydrostatic pressure of
-    paper eq. (21).
+    """Weight of the liquid: potential energy per volume, the hydrostatic pressure of eq. (21).
+
+    It is ``-rho g . x``, zero at the origin.
 
     Attributes
     ----------

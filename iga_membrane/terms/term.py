@@ -9,19 +9,17 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..arrays import Array, Index
+from ..solids import Nearest, Plane, Solid, Sphere, SphereLattice, Spheres
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
-
-
-AnySolid = Plane | Sphere | SphereLattice | Spheres
 
 
 @dataclass(frozen=True)
@@ -29,6 +27,12 @@ class Scale:
     """Units in which a scene is solved: a length, a tension, and a frame.
 
     Local coordinates are ``rotation.T @ (x - origin) / length``.
+
+    Attributes
+    ----------
+    length, tension : the units.
+    origin : (3,) of the frame, in world coordinates.
+    rotation : (3, 3) its columns are the frame's axes.
     """
 
     length: float = 1.0
@@ -38,14 +42,17 @@ class Scale:
 
     @property
     def force(self) -> float:
+        """Unit: tension times length."""
         return self.tension * self.length
 
     @property
     def energy(self) -> float:
+        """Unit: tension times squared length."""
         return self.tension * self.length**2
 
     @property
     def pressure(self) -> float:
+        """Unit: tension over length."""
         return self.tension / self.length
 
     @property
@@ -62,10 +69,11 @@ class Scale:
         x, y, z = (float(c) for c in self.to_local(np.array(sphere.center)))
         return Sphere(sphere.contact_angle, sphere.radius / self.length, (x, y, z))
 
-    def local_solid(self, solid: AnySolid) -> AnySolid:
-        """A solid in local, dimensionless coordinates.
+    def local_solid(self, solid: Solid) -> Solid:
+        """A substrate in local, dimensionless coordinates.
 
-        Lattices and lists keep their frame: scenes with them are not turned or shifted.
+        The frame is that of a plane; lattices and lists keep theirs: scenes with them are not
+        turned or shifted.
         """
         unit = self.length
         match solid:
@@ -88,10 +96,46 @@ class Scale:
                     np.asarray(solid.radii) / unit,
                     None if solid.base is None else solid.base / unit,
                 )
+            case _:
+                return LocalSolid(solid, self)
 
     def to_local(self, points: Array) -> Array:
         """Local, dimensionless coordinates of world points (..., 3)."""
         return np.asarray((points - np.array(self.origin)) @ self.axes / self.length)
+
+
+@dataclass(frozen=True)
+class LocalSolid:
+    """Any solid, seen in the units and the frame of a scale.
+
+    Attributes
+    ----------
+    solid : in world coordinates.
+    view : the scale.
+    """
+
+    solid: Solid
+    view: Scale
+
+    @property
+    def contact_angle(self) -> float | Sequence[float] | Array:
+        return self.solid.contact_angle
+
+    @property
+    def scale(self) -> float:
+        return self.solid.scale / self.view.length
+
+    def nearest(self, points: Array) -> Nearest:
+        at = self.solid.nearest(self.view.to_world(points))
+        unit, axes = self.view.length, self.view.axes
+        ridge = None if at.ridge is None else at.ridge @ axes * np.sqrt(unit)
+        return Nearest(at.gap / unit, at.normal @ axes, at.bend * unit, at.which, ridge)
+
+    def center_of(self, which: Index) -> Array:
+        return self.view.to_local(self.solid.center_of(which))
+
+    def radius_of(self, which: Index) -> Array:
+        return self.solid.radius_of(which) / self.view.length
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..checks import number
-from ..solids import Nearest, Plane, Sphere, SphereLattice, Spheres
+from ..solids import Nearest, Solid, SphereLattice, Spheres
 from ..splines import LineTable
 from ..splines.quadrature import gauss
 from .term import BodyDensity, Scale, Term
@@ -50,7 +50,7 @@ class TrimmedContactLine(Term):
     """
 
     gamma: float
-    solid: Plane | Sphere | SphereLattice | Spheres
+    solid: Solid
     toward: Array | None = None
     name = "wetting"
 

@@ -14,7 +14,12 @@ from .term import BodyDensity, BodyTerm, Constraint, Scale
 
 @dataclass(frozen=True)
 class Pressure(BodyTerm):
-    """Prescribed pressure (liquid minus gas) at the origin's height: energy ``-p V``."""
+    """Prescribed pressure (liquid minus gas) at the origin's height: energy ``-p V``.
+
+    Attributes
+    ----------
+    pressure : tension over length.
+    """
 
     pressure: float
     name = "pressure"
@@ -69,6 +74,7 @@ class Centroid(Constraint):
     Attributes
     ----------
     axis : "x", "y" or "z" in local coordinates.
+    target : of the integral of that coordinate over the liquid.
     """
 
     axis: str
@@ -76,6 +82,7 @@ class Centroid(Constraint):
 
     @property
     def name(self) -> str:  # type: ignore[override]
+        """Key of the multiplier."""
         return f"centroid_{self.axis}"
 
     def density(self) -> BodyDensity:

@@ -18,6 +18,7 @@ def save(solution: Solution, path: str | Path) -> None:
 
     Parameters
     ----------
+    solution : converged or not.
     path : its ending says what is written: .json the result, .npz the state, .vtu the exact
         rational Bezier surface with its fields, .stl, .obj or .ply the shape in triangles,
         .geomdl.json the spline surface for geomdl, .lines.csv the points of the contact lines,

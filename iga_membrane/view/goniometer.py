@@ -34,6 +34,7 @@ def plot_side(
 
     Parameters
     ----------
+    solution : of a droplet.
     path : of the picture; its ending chooses the format (.png, .pdf, .svg).
     azimuth : degrees round the frame's z axis by which the camera is turned; it looks along y from
         where y is negative.
@@ -56,6 +57,11 @@ def plot_side(
     scene = solution.scene
     if scene.kind != "sessile_droplet":
         raise SceneError("plot_side: shows droplets on a substrate; take plot or plot_section")
+    if not isinstance(scene.substrate, (Plane, Sphere, SphereLattice, Spheres)):
+        raise SceneError(
+            f"plot_side: what a goniometer sees on {type(scene.substrate).__name__} is not known; "
+            "take plot or plot_section"
+        )
     rough = isinstance(scene.substrate, (SphereLattice, Spheres))
     if rough and scene.lateral_load:
         raise SceneError("plot_side: a leaning droplet on asperities has no apparent angle")

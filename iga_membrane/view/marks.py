@@ -35,7 +35,9 @@ def add_lines(plotter: Any, pv: Any, solution: Solution, traction: bool) -> None
         if traction:
             _arrows(plotter, pv, x, -each.line.conormal, min(0.5 * size, radius))
     for asperity in solution.contact.get("asperities", ()):
-        if solution.contact["law"] != "contact lines":
+        on = solution.scene.substrate
+        ball = on is not None and np.isfinite(on.radius_of(np.array(asperity["index"])))
+        if ball and solution.contact["law"] != "contact lines":
             plotter.add_mesh(_lain_on(pv, solution, asperity), color=WET_COLOR, ambient=0.3)
 
 

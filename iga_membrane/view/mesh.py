@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Solid
 from ..terms import TrimmedContactLine
 from .drawing import pyvista
 from .fields import field
@@ -58,13 +58,13 @@ def membrane(
     return mesh
 
 
-def trimming_solid(solution: Solution) -> Plane | Sphere | SphereLattice | Spheres | None:
+def trimming_solid(solution: Solution) -> Solid | None:
     """The solid that the membrane passes through, in world coordinates."""
     terms = (term for term in solution.scene.terms if isinstance(term, TrimmedContactLine))
     return next((term.solid for term in terms), None)
 
 
-def outside(solid: Plane | Sphere | SphereLattice | Spheres, mesh: Any) -> Any:
+def outside(solid: Solid, mesh: Any) -> Any:
     """The part of the membrane's mesh that bounds the liquid."""
     mesh["gap"] = solid.nearest(np.asarray(mesh.points, float)).gap
     # inside its solid the membrane may rise above it: such parts hang on nothing

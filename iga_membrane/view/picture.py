@@ -54,6 +54,7 @@ def plot(
 
     Parameters
     ----------
+    solution : converged or not.
     path : PNG file to write; an interactive window if None.
     color : "mean_curvature" (exact, from the spline), "pressure", "gap" to the nearest solid,
         "residual", the error ``|2 H + p / gamma|`` over ``1 / L`` on a logarithmic scale, or
@@ -154,6 +155,7 @@ def _frame(
     substrate = solution.scene.substrate
     assert substrate is not None
     radius = float(substrate.radius_of(np.array(first["index"])))
+    radius = radius if np.isfinite(radius) else substrate.scale
     center = np.array(first["center"])
     top = center + 0.5 * radius * solution.scene.units.axes[:, 2]
     return top, 8.0 * radius, (center, 8.0 * radius)

@@ -33,6 +33,7 @@ def plot_section(
 
     Parameters
     ----------
+    solution : converged or not.
     path : of the picture; its ending chooses the format (.png, .pdf, .svg).
     resolution : points along each direction of the patch.
 
@@ -129,6 +130,11 @@ def _draw_solids(axes: Any, solution: Solution, section: Array) -> None:
         elif isinstance(solid, (SphereLattice, Spheres)):
             which = solid.within(1.3 * wide * scale.length)
             circles += zip(solid.center_of(which), solid.radius_of(which), strict=True)
+        else:
+            low = float(section[:, 2].min()) - 0.12 * wide
+            x, z = np.meshgrid(np.linspace(-wide, wide, 601), np.linspace(low, high, 401))
+            cut = scale.to_world(np.stack([x, np.zeros_like(x), z], axis=-1))
+            axes.contourf(x, z, solid.nearest(cut).gap, levels=[-np.inf, 0.0], colors=[SOLID])
     for center, radius in circles:
         x, y, z = scale.to_local(center)
         cut = (radius / scale.length) ** 2 - y**2

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..solids import Sphere, SphereLattice, Spheres
+from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -34,7 +34,7 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
         # a membrane that covers the sphere and has sunk into it is shown on top
         sunk = solution.contact.get("max_penetration") if solution.scene.line_inside else None
         solid = _ball(pv, substrate.center, substrate.radius - 1.5 * (sunk or 0.0))
-    elif substrate is not None:
+    elif isinstance(substrate, Plane):
         local = scale.to_local(solution.surface.points)
         reach = 1.35 * float(np.linalg.norm(local[:, :2], axis=1).max())
         thick = 0.05 * reach
@@ -44,6 +44,8 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
         )
         solid.points = scale.to_world(np.asarray(solid.points, float))
         look["smooth_shading"] = False
+    elif substrate is not None:
+        solid = _by_gap(pv, substrate, solution)
     else:
         return
     opacity = opacity if solution.scene.kind == "liquid_sheet" else 1.0
@@ -52,6 +54,25 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
 
 def _ball(pv: Any, center: tuple[float, float, float], radius: float) -> Any:
     return pv.Sphere(radius=radius, center=center, theta_resolution=120, phi_resolution=120)
+
+
+ACROSS = 240
+"""Cells across the surface of a solid that is known by its gap only."""
+
+
+def _by_gap(pv: Any, solid: Solid, solution: Solution) -> Any:
+    """Where the gap vanishes, under the droplet and a little beside it."""
+    points = solution.surface.points
+    reach = 1.3 * float(np.abs(points[:, :2]).max())
+    cell, top = 2.0 * reach / ACROSS, float(points[:, 2].min())
+    deep = min(2.0 * solid.scale, 0.5 * reach) + 4.0 * cell
+    grid = pv.ImageData(
+        dimensions=(ACROSS + 1, ACROSS + 1, int(np.ceil(2.0 * deep / cell)) + 1),
+        spacing=(cell, cell, cell),
+        origin=(-reach, -reach, top - deep),
+    )
+    grid["gap"] = solid.nearest(np.asarray(grid.points, float)).gap
+    return grid.contour([0.0], scalars="gap").compute_normals(flip_normals=False)
 
 
 def _add_asperities(plotter: Any, pv: Any, solution: Solution) -> None:

@@ -1,20 +1,16 @@
 """Every example runs and returns the physics it claims."""
 
-import importlib.util
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers import EXAMPLES
+from helpers import example as load
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, minimize_scalar
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-def load(name):
-    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+import iga_membrane as iga
 
 
 def test_every_example_has_a_test():
@@ -121,3 +117,131 @@ def test_particle_on_droplet():
         assert row["tangential"] < 0 < row["normal"]
     assert rows[0]["F_z"] > rows[1]["F_z"]
     assert rows[0]["F_x"] < rows[1]["F_x"]
+
+
+SCRIPTS = (
+    "own_substrate", "own_energy", "own_space", "own_scene", "parameter_sweep", "critical_angle",
+    "convergence_study",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_scripts_have_at_most_twenty_lines(name):
+    lines = (EXAMPLES / f"{name}.py").read_text().splitlines()[1:]
+    assert sum(bool(line.strip()) for line in lines) <= 20
+
+
+def test_pillars():
+    example = load("pillars")
+    round_, flat = example.main(rims=(0.15, 0.1), radius=0.15, elements=48)
+    spheres = example.droplet(iga.SphereLattice(180.0, 0.15, 0.6), elements=48)
+    for name in ("height", "pressure"):
+        assert round_[name] == pytest.approx(spheres.measures[name], rel=1e-10)
+    assert round_["A_wet"] == pytest.approx(spheres.measures["A_wet"], rel=2e-2)
+    assert round_["pillars"] == spheres.contact["wet_solids"]
+    for row in (round_, flat):
+        assert row["carried"] == pytest.approx(1.0, abs=1e-4)
+    assert flat["A_wet"] > round_["A_wet"]
+    assert flat["height"] > round_["height"]
+
+
+def test_own_substrate():
+    drop, (across, along, height) = load("own_substrate").main()
+    assert drop.success
+    assert along > 1.003 * across
+    assert height < across
+    weight = drop.measures["volume"]
+    assert drop.contact["support_force"] == pytest.approx(weight, rel=1e-4)
+    # tangent to round ridges, the force over p + gamma / r is the wet area's projection
+    pressure, radius = drop.measures["p_base"], 0.15
+    forces = sum(each["force"] for each in drop.contact["asperities"])
+    assert 1.0 < drop.measures["A_wet"] / (forces / (pressure + 1.0 / radius)) < 1.06
+
+
+def film_middle(load_, height):
+    """Height of the middle of the film, by shooting along its meridian from there."""
+    strength = load_ * height**3
+
+    def rates(r, y):
+        z, pull = y  # pull = (1 + f) r sin(slope)
+        gap = z + height
+        sine = pull / r / (1.0 - strength / gap)
+        long = 1.0 / np.sqrt(1.0 - sine**2)
+        return [sine * long, strength / gap**2 * r * long]
+
+    def edge(middle):
+        start = 1e-6
+        pull = 0.5 * strength / (middle + height) ** 2 * start**2
+        ends = {"rtol": 1e-11, "atol": 1e-14}
+        return solve_ivp(rates, (start, 1.0), [middle, pull], **ends).y[0, -1]
+
+    return brentq(edge, -0.44 * height, 0.0, xtol=1e-12)
+
+
+def test_own_energy():
+    path = load("own_energy").main(loads=(0.7, 0.8))
+    for value, solution in zip(path.values, path.solutions, strict=True):
+        middle = solution.surface.at([0.0, 1.0]).position[2]
+        assert middle == pytest.approx(film_middle(value, 0.05), rel=1e-7)
+    assert path.end.status is iga.Status.LIMIT_POINT
+    # the pull-in load of a disc, 0.789 where the film is nearly flat
+    assert 0.99 * 0.789 < path.bracket.lo < path.bracket.hi < 0.789
+
+
+def test_own_space():
+    study = load("own_space").main(elements=(4, 8))
+    smooth, rough = study.of("bspline", 3), study.of("rough", 3)
+    assert rough[-1].unknowns > 1.5 * smooth[-1].unknowns
+    assert study.rates("rough", 3, "energy")[0] > 5.5
+    assert abs(rough[-1].errors["energy"]) < 5e-8
+
+
+def hanging_volume(pressure):
+    """Volume of the drop of Bond number 1 that hangs from a ring of radius 1, integrated from its
+    lowest point, where the pressure is given."""
+
+    def rates(s, y):
+        r, z, psi, _ = y
+        around = np.sin(psi) / r if r > 1e-9 else 0.5 * pressure
+        return [np.cos(psi), np.sin(psi), pressure - z - around, np.pi * r**2 * np.sin(psi)]
+
+    def at_ring(s, y):
+        return y[0] - 1.0
+
+    start = [1e-10, 0.0, 0.0, 0.0]
+    tight = {"rtol": 1e-9, "atol": 1e-11}
+    return solve_ivp(rates, (0.0, 6.0), start, events=at_ring, **tight).y_events[0][0][3]
+
+
+def test_own_scene():
+    path = load("own_scene").main(volumes=(2.0, 6.0))
+    assert path.end.status is iga.Status.LIMIT_POINT
+    most = -minimize_scalar(lambda p: -hanging_volume(p), (2.5, 2.65, 2.8)).fun
+    assert path.bracket.lo <= 1.0002 * most
+    assert path.bracket.hi >= 0.9998 * most
+    assert path.bracket.hi - path.bracket.lo < 1e-3 * most
+
+
+def test_parameter_sweep(tmp_path):
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(1) as executor:
+        found = load("parameter_sweep").main(
+            angles=(60.0, 150.0), bonds=(0.5, 2.0), out=tmp_path, executor=executor
+        )
+    heights = found.column("height").reshape(2, 2)
+    assert np.all(heights[1] > heights[0])
+    assert np.all(heights[:, 0] > heights[:, 1])
+
+
+def test_critical_angle():
+    assert load("critical_angle").main().value == pytest.approx(144.05640220715, abs=1e-5)
+
+
+def test_convergence_study():
+    study = load("convergence_study").main(elements=(8, 16))
+    assert study.rates("bspline", 3, "energy")[0] > 5.5
+    assert study.rates("bspline", 2, "energy")[0] > 4.0
+    splines, lagrange = (study.of(name, 2)[-1] for name in ("bspline", "lagrange"))
+    assert splines.unknowns < 0.3 * lagrange.unknowns
+    assert abs(splines.errors["energy"]) < 5e-8

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME
+from helpers import UNIT_VOLUME, example
 from taylor import lagrangian_slopes, remainder_slopes
 
 import iga_membrane as iga
@@ -32,6 +32,17 @@ def rough(model, penalty, offset=(0.0, 0.0)):
     )
 
 
+def own(penalty):
+    """Pillars whose surface has two different curvatures."""
+    return iga.sessile_droplet(
+        example("pillars").Pillars(0.4, 0.3, 0.9),
+        volume=UNIT_VOLUME,
+        gravity=1.0,
+        discretization=iga.Discretization(elements=8, model="full"),
+        penalty=penalty,
+    )
+
+
 def scenes():
     for law in ("exact", "penalty"):
         penalty = PENALTY if law == "penalty" else None
@@ -40,6 +51,7 @@ def scenes():
         yield pytest.param(cell("full", penalty, (0.2, -0.3, -0.9)), id=f"cell off centre {law}")
         yield pytest.param(rough("eighth", penalty), id=f"lattice eighth {law}")
         yield pytest.param(rough("full", penalty, (0.1, 0.2)), id=f"lattice full {law}")
+        yield pytest.param(own(penalty), id=f"pillars {law}")
 
 
 SCENES = list(scenes())
