@@ -109,6 +109,8 @@ def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Sph
     kind = choice("substrate.kind", table.get("kind", "plane"), SUBSTRATES)
     allowed = _SUBSTRATE_KEYS[kind]
     for key in table:
+        if key != "kind" and not allowed:
+            raise SceneError(f'substrate.{key}: substrate.kind = "none" has no fields; remove it')
         if key != "kind" and key not in allowed:
             raise SceneError(
                 f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "

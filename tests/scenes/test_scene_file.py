@@ -136,15 +136,19 @@ def test_misspelt_keys_are_refused(path, said):
     ("path", "value", "said"),
     [
         ("substrate.kind", "spheres", "substrate.centers: missing"),
-        ("substrate.kind", "none", 'substrate.kind = "none": not available yet'),
+        (
+            "substrate.kind",
+            "none",
+            'substrate.contact_angle: substrate.kind = "none" has no fields',
+        ),
         ("substrate.kind", "sphere", "substrate.radius: missing"),
         ("scene", "asperity_cell", "gravity: does not belong"),
         ("scene", "liquid_sheet", "substrate: does not belong"),
         ("particle", [{"radius": 1.0}], "particle[0].center: missing"),
         (
             "particle",
-            [{"radius": 0.2, "center": [0, 0, 1.5], "contact_angle": 90, "motion": "vertical"}],
-            'particle[0].motion = "vertical": not available yet',
+            [{"radius": 0.2, "center": [0, 0, 1.5], "contact_angle": 90, "motion": "sideways"}],
+            "particle[0].motion = 'sideways'",
         ),
         (
             "particle",

@@ -123,7 +123,7 @@ def test_a_sweep_of_the_angle_comes_back_where_it_started():
     [
         ({"center": [2.6, 0, -1]}, "must lie inside the rim"),
         ({"contact_angle": 180.0, "boundary": "square"}, "not available yet"),
-        ({"motion": "vertical"}, "not available yet"),
+        ({"motion": "resting"}, "only on a plane"),
         ({"pressure": 0.1, "volume": 1.0}, "both are prescribed"),
         ({"radius": -1.0}, "radius must be > 0"),
     ],
