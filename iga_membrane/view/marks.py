@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..solids import Sphere
 from ..solver.lines import LineOnSolid, contact_lines
+from ..terms import TrimmedContactLine
 from .fields import solids
 from .mesh import trimming_solid
 
@@ -84,7 +85,11 @@ def _sphere_of(solution: Solution, each: LineOnSolid) -> tuple[Array, float]:
 def _spot(pv: Any, solution: Solution, each: LineOnSolid) -> Any:
     """The wetted surface inside a line: part of a sphere, or flat."""
     center, radius = _sphere_of(solution, each)
-    return _fan(pv, each.line.position, center, radius, solution.scene.units.axes[:, 2])
+    through = next((t for t in solution.scene.terms if isinstance(t, TrimmedContactLine)), None)
+    wet = solution.scene.units.axes[:, 2]
+    if through is not None and each.solid >= 0:
+        wet = through.axis(np.array(each.solid))
+    return _fan(pv, each.line.position, center, radius, wet)
 
 
 def _lain_on(pv: Any, solution: Solution, asperity: Any) -> Any:
@@ -103,18 +108,26 @@ def _lain_on(pv: Any, solution: Solution, asperity: Any) -> Any:
     return _fan(pv, line, center, radius, axis)
 
 
-def _fan(pv: Any, line: Array, center: Array, radius: float, up: Array) -> Any:
-    """Surface spanned by a closed line, a little above its sphere, or its plane with normal
-    ``up``."""
+def _fan(pv: Any, line: Array, center: Array, radius: float, wet: Array) -> Any:
+    """Surface inside a closed line, a little above its sphere, or its plane.
+
+    Parameters
+    ----------
+    wet : unit vector from a sphere's centre to its wet side, or a plane's normal.
+    """
     closed = np.vstack([line, line[:1]])
-    middle = line.mean(axis=0)
     part = np.linspace(0.0, 1.0, 41)[:, None, None]
-    x = middle + part * (closed - middle)
     if np.isfinite(radius):
-        away = x - center
-        x = center + (1.0 + LIFT) * radius * away / np.linalg.norm(away, axis=-1)[..., None]
+        # along great circles from the wet side's middle
+        out = (closed - center) / np.linalg.norm(closed - center, axis=-1)[:, None]
+        angle = np.arccos(np.clip(out @ wet, -1.0, 1.0))[:, None]
+        across = out - np.cos(angle) * wet
+        across /= np.linalg.norm(across, axis=-1)[:, None]
+        away = np.cos(part * angle) * wet + np.sin(part * angle) * across
+        x = center + (1.0 + LIFT) * radius * away
     else:
-        x = x + LIFT * float(np.ptp(line, axis=0).max()) * up
+        middle = line.mean(axis=0)
+        x = middle + part * (closed - middle) + LIFT * float(np.ptp(line, axis=0).max()) * wet
     return pv.StructuredGrid(*(np.ascontiguousarray(x[..., i])[..., None] for i in range(3)))
 
 
