@@ -14,7 +14,7 @@ from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..solver.load_stepping import Bracket
-from ..solver.moving import Places
+from ..solver.moving import LOST, Places
 from ..solver.options import SolverOptions
 from ..solver.solution import Solution
 from ..solver.solve import solve
@@ -71,7 +71,7 @@ def pull_off(
     SceneError
         If not exactly one particle moves, or its line does not lead out of the liquid.
     SolveError
-        If the particle has no equilibrium where it stands, or does not detach.
+        If the particle has no equilibrium where it stands, does not detach, or a limit is reached.
     """
     record("scene", scene, Scene)
     options = options or SolverOptions()
@@ -102,6 +102,8 @@ def pull_off(
             forces = solution.forces[number]
             held[place] = -way * float((forces.effective - forces.weight) @ line)
             report(place * radius)
+        elif solution.status not in LOST:
+            raise SolveError(f"{solution.status.name}: {solution.message}", solution)
         return solution
 
     first = pulled(0.0)

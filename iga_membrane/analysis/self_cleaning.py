@@ -17,6 +17,9 @@ from ..solver.options import SolverOptions
 from ..solver.solution import Solution
 from ..solver.solve import solve
 
+ROUNDING = 1e-9
+"""Force over weight and line force that counts as none."""
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -72,12 +75,16 @@ def self_cleaning(
     Raises
     ------
     SceneError
-        If the scene has no particle.
+        If the scene has no particle, or a droplet stands on no plane.
     SolveError
         If there is no stable equilibrium.
     """
     record("scene", scene, Scene)
     friction = number("friction", friction, least=0.0)
+    if scene.kind == "sessile_droplet" and not isinstance(scene.substrate, Plane):
+        raise SceneError(
+            "substrate: particles are cleaned from a plane, or lifted by a sheet; give a Plane"
+        )
     if scene.free_particles is not None:
         scene = scene.free_particles.scene_at(np.zeros(len(scene.free_particles.which)))
     solution = solve(scene, options)
@@ -92,9 +99,11 @@ def _verdict(forces: ParticleForces, up: Array, friction: float) -> Verdict:
     liquid = forces.effective - forces.weight
     out = float(forces.effective @ up)
     along = float(np.linalg.norm(forces.effective - out * up))
-    slide = float("inf") if out >= 0.0 else along / -out
+    # what is less than rounding is nothing
+    none = ROUNDING * float(np.linalg.norm(forces.weight) + np.linalg.norm(forces.contact_line))
+    slide = along / -out if out < -none else float("inf") if out > none or along > none else 0.0
     return Verdict(
-        "lifted" if out > 0.0 else "dragged" if slide > friction else "stays",
+        "lifted" if out > none else "dragged" if slide > friction else "stays",
         float(liquid @ up),
         float(np.linalg.norm(liquid - (liquid @ up) * up)),
         -float(forces.weight @ up),

@@ -120,6 +120,12 @@ def sessile_droplet(
             f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "
             "length leaves the range of floating point numbers; choose other units"
         )
+    across = float(np.linalg.norm(bond[:2]))
+    if asked_substrate is None and hold == "none" and across > 1e-9 * np.linalg.norm(bond):
+        raise SceneError(
+            "gravity.direction: a free droplet hangs on its particle along gravity, here they "
+            'differ; move the particle, or hold the droplet by droplet.hold = "xyz"'
+        )
     terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
     if bond.any():
         gx, gy, gz = (float(g) for g in acceleration)
@@ -183,7 +189,7 @@ def sessile_droplet(
         hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=_hints(substrate, bond, sector),
+        warnings=_hints(substrate, bond, sector, rolls=asked_substrate is not None or not held),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
@@ -293,7 +299,7 @@ def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float],
     return (x, y, z + substrate.radius), np.eye(3)
 
 
-def _hints(substrate: Solid, bond: Array, sector: Sector) -> tuple[str, ...]:
+def _hints(substrate: Solid, bond: Array, sector: Sector, *, rolls: bool) -> tuple[str, ...]:
     texts = []
     angle = float(np.min(substrate.contact_angle))
     if angle <= np.pi:
@@ -301,7 +307,7 @@ def _hints(substrate: Solid, bond: Array, sector: Sector) -> tuple[str, ...]:
             f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
             "angles are in degrees through the liquid"
         )
-    if isinstance(substrate, Sphere) and sector.model in ("quarter", "eighth"):
+    if rolls and isinstance(substrate, Sphere) and sector.model in ("quarter", "eighth"):
         texts.append(
             "a drop on a smooth sphere "
             + ("slides off it" if bond.any() else "rolls on it freely")

@@ -24,7 +24,8 @@ def seat_of(particles: Sequence[Sphere], hold: str) -> Sphere:
     Raises
     ------
     SceneError
-        None or several particles, one about the origin, a hold along some axes only.
+        None or several particles, one about the origin or moving without a hold, a hold along some
+        axes only.
     """
     if len(particles) != 1:
         raise SceneError(
@@ -36,6 +37,11 @@ def seat_of(particles: Sequence[Sphere], hold: str) -> Sphere:
         raise SceneError(
             "particle[0].center = [0, 0, 0]: a free droplet lies about the origin; put the "
             "particle beside it"
+        )
+    if particle.motion != "fixed" and hold == "none":
+        raise SceneError(
+            f'particle[0].motion = "{particle.motion}": a free droplet follows its particle; hold '
+            'it by droplet.hold = "xyz", or leave the motion out'
         )
     if hold not in HOLDS:
         raise SceneError(

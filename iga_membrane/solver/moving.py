@@ -27,6 +27,8 @@ PROBE = 1e-3
 STEP, SHORTEST = 0.25, 1e-3
 """Displacement over the radius in one step at most, and below which a failed one is given up."""
 TRIES = 60
+LOST = frozenset(Status) - {Status.CONVERGED_STABLE, Status.INTERRUPTED, Status.UNVERIFIED}
+"""Ends of a solve, close to a place that was solved, which say that its equilibrium is gone."""
 
 
 class Places:
@@ -50,7 +52,10 @@ class Places:
         known = [k for k, one in enumerate(self.found) if one.success]
         if known and asked.predictor is None:
             near = min(known, key=lambda k: float(np.linalg.norm(self.tried[k] - place)))
-            start = self.found[near].surface
+            found = self.found[near]
+            # a free droplet's frame turns with its particle
+            local = found.scene.units.to_local(found.surface.points)
+            start = found.surface.moved(asked.units.to_world(local))
             asked = replace(asked, surface=start, ramp=None)
         self.tried.append(place)
         self.found.append(self._solve_fixed(asked))
@@ -99,7 +104,10 @@ def settled(scene: Scene, solve_fixed: Callable[[Scene], Solution]) -> Solution:
         force = forces_along(free, here)
         open_ = ~((place <= least) & (force <= 0.0))
         if np.abs(force[open_]).max(initial=0.0) <= BALANCED:
-            return ended(_judged(here, slopes, open_))
+            if not open_.any():
+                return ended(here)
+            slopes = _slopes(free, place, force, places.at)
+            return ended(places.found[-1] if slopes is None else _judged(here, slopes, open_))
         if slopes is None:
             slopes = _slopes(free, place, force, places.at)
             if slopes is None:
@@ -108,11 +116,13 @@ def settled(scene: Scene, solve_fixed: Callable[[Scene], Solution]) -> Solution:
         step[open_] = _step(slopes[np.ix_(open_, open_)], force[open_])
         step = np.maximum(place + step, least) - place
         ahead = places.at(place + step)
-        while not ahead.success and np.abs(step).max() > SHORTEST:
+        while ahead.status in LOST and np.abs(step).max() > SHORTEST:
             step = 0.5 * step
             ahead = places.at(place + step)
-        if not ahead.success:
+        if ahead.status in LOST:
             return ended(_lost(free, ahead, place, step))
+        if not ahead.success:
+            return ended(ahead)
         change = forces_along(free, ahead) - force
         slopes = slopes + np.outer(change - slopes @ step, step) / (step @ step)
         place, here = place + step, ahead
@@ -154,10 +164,8 @@ def _step(slopes: Array, force: Array) -> Array:
     return np.asarray(step * min(1.0, STEP / np.abs(step).max()))
 
 
-def _judged(solution: Solution, slopes: Array | None, open_: Mask) -> Solution:
+def _judged(solution: Solution, slopes: Array, open_: Mask) -> Solution:
     """With the particles' share of the stability index."""
-    if slopes is None or not open_.any():
-        return solution
     own = slopes[np.ix_(open_, open_)]
     falling = int((np.linalg.eigvalsh(-0.5 * (own + own.T)) <= 0).sum())
     if not falling:

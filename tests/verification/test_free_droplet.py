@@ -98,3 +98,42 @@ def test_more_than_one_particle_is_refused():
         iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[one, two])
     with pytest.raises(iga.SceneError, match=r"center = \[0, 0, 0\]"):
         iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[iga.Sphere(90.0, 0.2)])
+
+
+def test_moving_particle_of_held_droplet_finds_its_place_off_the_axis():
+    """The droplet's frame turns with the particle on the way."""
+    particle = iga.Sphere(90.0, 0.5, (1.0, 0.0, 0.01), motion="vertical")
+    scene = iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[particle], hold="xyz")
+    found = iga.solve(scene)
+    assert found.success, found.message
+    assert abs(found.forces[0].effective[2]) <= 1e-8 * 0.5
+    # at rest on the droplet, wherever that is
+    at_rest = iga.solve(free(90.0, 0.5, (0.0, 0.0, 1.2)))
+    assert found.measures["energy"] == pytest.approx(at_rest.measures["energy"], rel=1e-9)
+
+
+def test_balance_at_a_maximum_of_the_energy_is_a_saddle():
+    particle = iga.Sphere(90.0, 0.5, (1.0, 0.0, 0.0), motion="vertical")
+    scene = iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[particle], hold="xyz")
+    found = iga.solve(scene, on_fail="return")
+    assert found.status is iga.Status.CONVERGED_SADDLE
+    assert found.index == 1
+
+
+def test_cpu_limit_is_no_detachment():
+    particle = iga.Sphere(90.0, 0.5, (0.0, 0.0, -1.0), motion="normal")
+    scene = iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[particle], hold="xyz")
+    with pytest.raises(iga.SolveError, match="INTERRUPTED"):
+        iga.pull_off(scene, iga.SolverOptions(max_cpu_s=0.5))
+    stopped = iga.solve(scene, iga.SolverOptions(max_cpu_s=0.15), on_fail="return")
+    assert stopped.status is iga.Status.INTERRUPTED
+
+
+def test_free_droplets_that_nothing_holds_are_refused():
+    with pytest.raises(iga.SceneError, match=r"gravity\.direction: a free droplet hangs"):
+        free(90.0, 0.5, (0.0, 0.0, -1.0), gravity=[0.3, 0.0, 0.0])
+    moving = iga.Sphere(90.0, 0.5, (0.0, 0.0, -1.0), motion="normal")
+    with pytest.raises(iga.SceneError, match=r"motion = \"normal\": a free droplet follows"):
+        iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[moving])
+    with pytest.raises(iga.SceneError, match="substrate: particles are cleaned from a plane"):
+        iga.self_cleaning(free(90.0, 0.5, (0.0, 0.0, -1.0), hold="xyz"), friction=0.3)
