@@ -31,7 +31,10 @@ FARTHEST = 50.0
 
 @dataclass(frozen=True, eq=False)
 class PullOff:
-    """How liquid holds a particle that is pulled out of it.
+    """How liquid holds a particle that is pulled out of it, in the user's units.
+
+    Displacements are along the line of the particle's motion, upwards if it is vertical and out of
+    the liquid if it is normal.
 
     Attributes
     ----------

@@ -31,7 +31,8 @@ class Verdict:
     normal, tangential : force of the liquid out of the substrate, and size of that along it.
     weight : part of the weight that presses the particle on the substrate.
     slide : tangential force, that of the weight included, over the force that presses the particle
-        on the substrate: it is dragged above the coefficient of friction; inf where it is lifted.
+        on the substrate: it is dragged above the coefficient of friction; inf where nothing presses
+        it down.
     """
 
     answer: str
@@ -91,7 +92,7 @@ def self_cleaning(
     if not solution.forces:
         raise SceneError("particle: the scene has none; give it one or more")
     solid = scene.substrate
-    up = np.array(solid.normal if isinstance(solid, Plane) else (0.0, 0.0, 1.0))
+    up = np.array(solid.unit_normal() if isinstance(solid, Plane) else (0.0, 0.0, 1.0))
     return SelfCleaning([_verdict(each, up, friction) for each in solution.forces], solution)
 
 

@@ -71,7 +71,7 @@ def moving(
         line = {
             "vertical": np.array(VERTICAL),
             "normal": -toward[i],
-            "resting": np.array(plane.normal if isinstance(plane, Plane) else VERTICAL),
+            "resting": np.array(plane.unit_normal() if isinstance(plane, Plane) else VERTICAL),
         }[each.motion]
         lines.append(line)
         least.append(stop)

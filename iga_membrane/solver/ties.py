@@ -18,7 +18,7 @@ STRENGTH = 0.001, 0.02
 """Factor of the jumps' energy over the tension: least, and at 45 degrees to the solid on a coarse
 mesh, where it is steadier. It falls with the fourth power of a smaller angle: the error of a line's
 angle grows with it over that angle's square, and flat spots are steady with less."""
-LOOSE = 0.1
+AT_PARTICLES = 0.1
 """The same with particles: the start may be far away, and along the smooth spines of a droplet ties
 cost the angle nothing."""
 COARSE = 0.3
@@ -40,7 +40,7 @@ class Ties:
     Attributes
     ----------
     strength : factor of the jumps' energy over the tension.
-    firmness : by which it is larger than usual, on asperities.
+    firmness : by which it is larger than usual.
     """
 
     strength: float = STRENGTH[0]
@@ -60,12 +60,12 @@ class Ties:
         self._unknowns = unknowns[space.functions[elements]]
         self._factor: tuple[Array, Any] | None = None
 
-    def begin(self, steepness: float, element: float, loose: bool) -> None:
+    def begin(self, steepness: float, element: float, particles: bool) -> None:
         """Free to choose again, for a membrane that meets its solid at an angle (radians), with
-        elements of a size over the contact length; ``loose`` if there are particles."""
+        elements of a size over the contact length; and whether there are ``particles``."""
         steep = min(steepness / (0.25 * np.pi), 1.0)
         wanted = STRENGTH[1] * steep**4 * (element / COARSE) ** 2
-        usual = LOOSE if loose else float(np.clip(wanted, *STRENGTH))
+        usual = AT_PARTICLES if particles else float(np.clip(wanted, *STRENGTH))
         self.strength = self.firmness * usual
         none = np.zeros(len(self._elements), bool)
         self._held, self._touched, self._last = none, none, (none, none)

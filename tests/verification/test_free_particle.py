@@ -188,3 +188,20 @@ def test_motions_that_a_scene_lacks_are_refused():
         iga.sessile_droplet(iga.Sphere(90.0, 1.0, motion="vertical"), volume=1.0)
     with pytest.raises(iga.SceneError, match=r"particle\.motion"):
         iga.Sphere(90.0, 1.0, motion="sideways")
+
+
+def test_length_of_the_plane_s_normal_does_not_matter():
+    """Lines are unit vectors, and verdicts are the forces themselves."""
+    particle = iga.Sphere(90.0, 0.2, (0.82, 0.0, 1.12), 2.0, "resting")
+
+    def scene(size):
+        plane = iga.Plane(150.0, normal=(0.0, 0.0, size))
+        return iga.sessile_droplet(
+            plane, volume=UNIT_VOLUME, gravity=BOND, particles=[particle], hold="x"
+        )
+
+    assert scene(3.0).free_particles.lines == pytest.approx(np.array([[0.0, 0.0, 1.0]]))
+    one, three = (iga.self_cleaning(scene(size), friction=0.3).verdicts[0] for size in (1.0, 3.0))
+    assert three.normal == pytest.approx(one.normal, rel=1e-9)
+    assert three.weight == pytest.approx(2.0 * 4.0 / 3.0 * np.pi * 0.2**3 * BOND, rel=1e-12)
+    assert three.slide == pytest.approx(one.slide, rel=1e-9)
