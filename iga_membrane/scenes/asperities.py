@@ -18,9 +18,7 @@ from .liquid import Model
 from .pattern import (
     FINE,
     LEAST,
-    NARROW,
-    PER_SPACING,
-    WIDER,
+    RING,
     Pattern,
     element_size,
     fine_part,
@@ -51,7 +49,8 @@ class Skin:
     ----------
     space, points, directions : of the membrane.
     pressure : estimated at its foot.
-    many : whether many asperities carry it; narrow : each of them at one point of the mesh.
+    many : whether many asperities carry it.
+    ring : radius of the rings on which each of them does, or None.
     """
 
     space: Space
@@ -59,7 +58,7 @@ class Skin:
     directions: Array
     pressure: float
     many: bool
-    narrow: bool
+    ring: float | None
 
 
 def whole_skin(
@@ -90,9 +89,8 @@ def whole_skin(
     if not elements:
         elements = _elements(drop, pattern, wide, reach, many)
     fine = fine_part(reach, elements) if many else FINE
-    spot, size = pattern.spot(drop.pressure), wide / (fine * elements)
-    narrow = many and pattern.repels and not pattern.stiffness
-    narrow &= spot <= NARROW * WIDER * size <= NARROW * WIDER * pattern.spacing / PER_SPACING[0]
+    narrow = many and pattern.unresolved(drop.pressure, wide / (fine * elements))
+    ring = RING * pattern.spot(drop.pressure) if narrow else None
     stretch = Stretch(fine, reach / fine) if reach < fine else Stretch()
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
@@ -103,7 +101,7 @@ def whole_skin(
         points[:, 2] += length if start == "above" else 0.0
     elif many:
         points[:, 2] -= 0.5 * pattern.sag(drop.pressure)
-    return Skin(space, points, directions, drop.pressure, many, narrow)
+    return Skin(space, points, directions, drop.pressure, many, ring)
 
 
 def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
@@ -130,7 +128,7 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
     needed = PER_RADIUS * across / length
     if many and not stiffness:
         size = length / PER_RADIUS
-        if pattern.repels:
+        if pattern.repels or pattern.narrow(drop.pressure):
             size = element_size(pattern, drop.pressure, wide / (FINE * LEAST))
         needed = graded(reach, wide / size)
     if stiffness:
@@ -142,7 +140,8 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
             f"elements from the middle to a side, more than {MOST}: not available yet; give "
             "larger asperities, or discretization.elements"
         )
-    return max(LEAST if many and pattern.repels else FEWEST, int(np.ceil(needed)))
+    least = LEAST if many and pattern.narrow(drop.pressure) else FEWEST
+    return max(least, int(np.ceil(needed)))
 
 
 def _meridian(drop: FlatDrop, wide: float) -> Meridian:

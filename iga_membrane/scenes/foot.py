@@ -19,6 +19,7 @@ from ..terms import (
     Contact,
     LineTerm,
     PlaneContactLine,
+    Ring,
     Scale,
     SphereContactLine,
     Term,
@@ -159,7 +160,9 @@ def _on_an_area(parts: Question) -> Foot:
     lies = attracts or least == 180.0
     unit_law = scale.length**2 / scale.tension
     stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
-    pattern = Pattern(length, cell_of(local), lies, least == 180.0, stiffness)
+    single = not stiffness and (least == 180.0 or parts.contact_line == "auto")
+    psi = float(np.radians(180.0 - least))
+    pattern = Pattern(length, cell_of(local), lies, psi, single, stiffness)
     skin = whole_skin(parts.down, unit, pattern, mesh.degree, elements, parts.start)
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
@@ -169,19 +172,23 @@ def _on_an_area(parts: Question) -> Foot:
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
     # contact lines lie in the part of the membrane that takes no part in shifts
     above = 0.0 if lies else 2.0 * largest_radius(local)
-    if skin.narrow:
+    if skin.ring is not None:
         # where the membrane meets point supports it moves vertically only
         above = float(skin.points[skin.directions[:, 2] == -1.0, 2].max())
     # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
     law = parts.law
-    if skin.narrow:
-        law = replace(law, point_supports=True)
+    if skin.ring is not None:
+        pressure = skin.pressure * scale.tension / scale.length
+        law = replace(law, ring=Ring(skin.ring * scale.length, pressure))
     elif skin.many and pattern.repels and law.penalty is None:
         law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
     foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
     if least == 180.0:
         return foot
+    if skin.ring is not None:
+        # from where they repel, no more asperities are met than pull the membrane down on others
+        return replace(foot, predictor=[replace(law, solid=with_angle(law.solid, 180.0))])
     if attracts:
         most = float(np.max(substrate.contact_angle))
         if most > least:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..solids import Solid, SphereLattice, Spheres
+from ..solids.wet_spot import spot_radius
 from ..splines.point_load import ROBIN
 
 FINE = 0.75
@@ -26,10 +27,11 @@ default."""
 LEAST = 36
 """Elements from the middle to a side at least, for a droplet on point supports."""
 PER_SPACING = 3.0, 4.0
-"""Elements from one point support to the next: at least, and as many as keep spots narrow."""
-NARROW, WIDER = 0.25, 1.5
-"""Radius of a spot over the element's size that the mesh of point supports is made for, and how
-much wider spots on the coarsest such mesh may be."""
+"""Elements from one point support to the next: at least, and by default."""
+WIDE = 0.25
+"""Radius of the spot of a point support over the spacing, at most."""
+RING = 1.0
+"""Radius of the ring on which a point support acts, over that of the spot."""
 SUNK = 3e-4
 """Depth over radius to which that penalty lets the membrane sink."""
 GROWTH = 0.15
@@ -46,7 +48,8 @@ class Pattern:
     cell : area of the substrate per asperity; infinite without asperities.
     lies : whether the membrane lies on the asperities; where it passes through them, below 180
         degrees, more of them are wet.
-    repels : whether the contact angle is 180 degrees.
+    psi : pi minus the smallest contact angle, in radians.
+    single : whether an asperity may carry the membrane at one place of its mesh.
     stiffness : traction over depth of a penalty that was asked for, else 0: the mesh is then as
         fine as the depth asks for.
     """
@@ -54,8 +57,14 @@ class Pattern:
     length: float
     cell: float = np.inf
     lies: bool = True
-    repels: bool = True
+    psi: float = 0.0
+    single: bool = True
     stiffness: float = 0.0
+
+    @property
+    def repels(self) -> bool:
+        """Whether the contact angle is 180 degrees."""
+        return self.psi == 0.0
 
     def many(self, foot: float) -> bool:
         """Whether many asperities lie under a foot of a radius."""
@@ -67,9 +76,20 @@ class Pattern:
         return float(np.sqrt(self.cell))
 
     def spot(self, pressure: float) -> float:
-        """Radius a of the wet spots under a membrane of tension 1: they carry
-        ``2 pi a^2 / length = pressure cell``."""
-        return float(np.sqrt(pressure * self.cell * self.length / (2.0 * np.pi)))
+        """Radius of the wet spots of a membrane of tension 1 that carry a pressure."""
+        load = pressure * self.cell / (2.0 * np.pi * self.length)
+        weight = 0.5 * pressure * self.length
+        return self.length * float(spot_radius(*np.array([load, self.psi, weight])))
+
+    def narrow(self, pressure: float) -> bool:
+        """Whether its spots are so narrow that each may be carried at one place."""
+        return self.single and self.spot(pressure) <= WIDE * self.spacing
+
+    def unresolved(self, pressure: float, size: float) -> bool:
+        """Whether elements of a size carry each spot at one place: too coarse to resolve it, and
+        fine enough for the membrane in between."""
+        fine = size * PER_SPACING[0] <= self.spacing
+        return self.narrow(pressure) and fine and self.spot(pressure) <= PER_SPOT[1] * size
 
     def sag(self, pressure: float) -> float:
         """Mean depth of such a membrane under the tops: the potential of a wide square lattice of
@@ -84,14 +104,11 @@ class Pattern:
 
 
 def element_size(pattern: Pattern, pressure: float, largest: float) -> float:
-    """Under many asperities: so coarse that each is a point support, or, where wet spots are too
-    wide for that, so fine that they are resolved; ``largest`` : for the droplet itself."""
-    spot, spacing = pattern.spot(pressure), pattern.spacing
-    coarsest, finest = (spacing / count for count in PER_SPACING)
-    coarsest = min(coarsest, largest)
-    if spot <= WIDER * NARROW * coarsest:
-        return float(np.clip(spot / NARROW, min(finest, coarsest), coarsest))
-    return min(pattern.length / PER_SPOT[0], spot / PER_SPOT[1])
+    """Under many asperities: each a point support, or, where wet spots are too wide for that, so
+    fine that they are resolved; ``largest`` : for the droplet itself."""
+    if pattern.narrow(pressure):
+        return min(pattern.spacing / PER_SPACING[1], largest)
+    return min(pattern.length / PER_SPOT[0], pattern.spot(pressure) / PER_SPOT[1])
 
 
 PARTS = np.linspace(FINE, 0.97, 221)

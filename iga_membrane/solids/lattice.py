@@ -61,6 +61,10 @@ class SphereLattice:
         """(...) radii of spheres by their numbers."""
         return np.full(np.shape(which), self.radius)
 
+    def angle_of(self, which: Index) -> Array:
+        """(...) contact angles in degrees of spheres by their numbers."""
+        return np.full(np.shape(which), self.contact_angle)
+
     @property
     def area_per_sphere(self) -> float:
         """Of the lattice's cell."""
@@ -169,6 +173,10 @@ class Spheres:
     def radius_of(self, which: Index) -> Array:
         """(...) radii of spheres by their numbers."""
         return np.asarray(self.radii)[which]
+
+    def angle_of(self, which: Index) -> Array:
+        """(...) contact angles in degrees of spheres by their numbers."""
+        return np.asarray(self.contact_angle)[which]
 
     @cached_property
     def _tree(self) -> Any:

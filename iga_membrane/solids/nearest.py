@@ -70,6 +70,9 @@ class Solid(Protocol):
 class Asperities(Solid, Protocol):
     """Many spheres."""
 
+    def angle_of(self, which: Index) -> Array:
+        """(...) contact angles in degrees of spheres by their numbers."""
+
     def within(self, reach: float) -> Index:
         """Numbers of the spheres whose centres lie within a distance of the z axis."""
 

@@ -99,6 +99,8 @@ class Assembly(Functional):
 
     def relaxed(self, surface: Surface, motion: Motion) -> Surface:
         """The same liquid; what lies inside a solid, and on which nothing depends, smoothed."""
+        if self.contact is not None:
+            self.contact.hold(surface.points)
         if self.trim is None:
             return surface
         self.trim.hold(surface.points)
@@ -231,4 +233,5 @@ class Assembly(Functional):
         return matrix
 
     def _matrix(self) -> Matrix:
-        return self.rows.matrix(None if self.trim is None else self.trim.ties.across[0])
+        tied = None if self.contact is None else self.contact.tied
+        return self.rows.matrix(tied if self.trim is None else self.trim.ties.across[0])

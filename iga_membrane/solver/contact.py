@@ -124,6 +124,18 @@ class ContactSet:
         """In a word."""
         return "multipliers" if self.exact else "penalty"
 
+    @property
+    def tied(self) -> Index | None:
+        """(k, local) functions that contact couples although no element has them all, or None."""
+        return None
+
+    def leaving(self, which: Index, tension: float) -> Array:
+        """Angles in radians at which the membrane leaves spheres, pi minus the contact angles."""
+        return np.full(np.shape(which), np.arccos(1.0 - self.adhesion / tension))
+
+    def hold(self, points: Array) -> None:
+        """Take note of a state that steps lead away from; gaps have no memory."""
+
     def begin(self) -> None:
         """Soft again and without lifts, from the multipliers at hand."""
         self.rounds = 0

@@ -187,7 +187,7 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
     radius = np.where(ball, radii, 0.0)
     level = centers[:, 2] + radius
     pressure = -(body.constant + body.gradient[2] * level)
-    psi = np.arccos(1.0 - contact.adhesion / assembly.tension)
+    psi = np.where(on_sphere, contact.leaving(np.maximum(which, 0), assembly.tension), 0.0)
     carried = np.where(forces[:, 2] > 0, -size, size) / (np.pi * assembly.tension)
     share = np.where(ball, _share(pressure / assembly.tension, radii, carried, psi), 0.0)
     projected = np.where(ball, share * np.pi * radius**2, size / pressure)
@@ -201,11 +201,11 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
         areas = np.where(on_sphere & ~ball, np.bincount(inverse, each, len(which)), areas)
     polar = np.arcsin(np.sqrt(share))
     heights = centers[:, 2] + radius * np.cos(polar)
-    angles = np.full(len(which), 180.0 - np.degrees(psi))
+    angles = 180.0 - np.degrees(psi)
     return Footing(which, centers, forces, radii, projected, areas, polar, heights, angles)
 
 
-def _share(pressure: Array, radii: Array, carried: Array, psi: float) -> Array:
+def _share(pressure: Array, radii: Array, carried: Array, psi: Array) -> Array:
     """(k,) projected area of spots over that of their spheres, ``sin(phi)^2``, by what they carry
     over ``pi gamma``."""
     with np.errstate(invalid="ignore", divide="ignore"):

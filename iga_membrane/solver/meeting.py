@@ -39,9 +39,9 @@ def contact_of(scene: Scene, surface: Surface, points: tuple[int, int]) -> Conta
     if term is None:
         return None
     elements, _ = sector_elements(surface.space, scene.sector)
-    if term.point_supports and isinstance(term.solid, (SphereLattice, Spheres)):
+    if term.ring is not None and isinstance(term.solid, (SphereLattice, Spheres)):
         tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
-        return PointSupports(scene, term.solid, surface, tension, elements)
+        return PointSupports(scene, term.solid, term.ring, surface, tension, elements)
     points = (1, 1) if term.penalty is None else points
     table = sector_table(surface.space, scene.sector, points)
     area = vary.element_points(table, surface.points).area * table.weights
@@ -76,7 +76,7 @@ def same_law(one: Contact | None, other: Contact | None) -> bool:
     """Whether two laws of contact are the same, for the same solid."""
     if one is None or other is None or type(one.solid) is not type(other.solid):
         return False
-    laws = [(c.penalty, c.depth, c.adhesion, c.point_supports) for c in (one, other)]
+    laws = [(c.penalty, c.depth, c.adhesion, c.ring) for c in (one, other)]
     fields = [vars(c.solid) for c in (one, other)]
     return laws[0] == laws[1] and all(
         np.array_equal(fields[0][key], fields[1][key])

@@ -1,15 +1,9 @@
 """Asperities so small that their wet spots fall between the mesh's lines: point supports.
 
-A force f on a membrane of tension gamma leaves a spot of radius a, ``a^2 = f r / 2 pi gamma``, on a
-sphere of radius r, and the membrane falls off from it by ``f log(. / a) / 2 pi gamma``. A mesh that
-does not resolve the spot cuts the logarithm off at an effective radius b instead
-(:mod:`iga_membrane.splines.point_load`). Where the mesh passes the asperity's axis it is then below
-the asperity's top by
-
-    d = f / (4 pi gamma) (1 + log(2 pi gamma b^2 / (f r)))
-
-while the membrane it stands for lies on the spot. In ``phi = (a / b)^2`` and ``D = 2 r d / b^2``
-that is ``phi (1 - log(phi)) = D``, a spring that stiffens as the spot grows.
+Each carries the membrane as its wet spot would (:mod:`iga_membrane.solids.wet_spot`). The force
+acts on a ring of a few points round the asperity's axis, as wide as the spot: the mesh, seen by the
+ring, cuts the logarithm off near the ring's radius however it lies between the mesh's lines
+(:mod:`iga_membrane.splines.point_load`).
 """
 
 from __future__ import annotations
@@ -23,19 +17,24 @@ from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..solids import SphereLattice, Spheres
 from ..solids.nearest import Asperities, Nearest
+from ..solids.wet_spot import WetSpots, held
 from ..splines import Table
 from ..splines.point_load import effective_radius
 from ..surface.sector import in_sector, mirrors
 from ..surface.surface import Surface
+from ..terms import Ring
 from .contact import ContactSet, Touch
 
-LARGEST = 0.75
-"""``phi`` up to which the spring stiffens; beyond, it goes on with the same stiffness."""
 WIDEST = 2.0
 """Radius of a spot over the effective radius up to which sags are right to 5 percent
 (docs/results/lotus.md)."""
 NEWTON = 30
 """Steps at most that find where in the mesh an axis is."""
+STEADY = 0.05
+"""Change of the depths, over the spheres' radii, from one state to the next up to which the next
+remembers what the one before has wet; farther ones come too far on their way."""
+RING = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) / np.sqrt(2.0)
+"""Points of a ring of radius 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,17 +43,15 @@ class Supports:
 
     Attributes
     ----------
-    table : functions at the axes, an "element" with one point for each.
+    table : functions on the rings, an "element" with one point, the ring's mean, for each.
     which : (k,) numbers of the asperities; share : (k,) part of each that belongs to the sector.
-    top, radius, reach : (k,) height of the asperity's top, its radius, effective radius b.
+    reach : (k,) effective radius b.
     spacing : of a square lattice with as many asperities.
     """
 
     table: Table
     which: Index
     share: Array
-    top: Array
-    radius: Array
     reach: Array
     spacing: float
 
@@ -65,17 +62,28 @@ class PointSupports(ContactSet):
     Parameters
     ----------
     scene : whose membrane it is.
-    solid : in the scene's scale.
+    solid, ring : asperities, and where they carry the membrane, in the scene's scale.
     start : surface whose mesh meets the asperities as long as its foot moves vertically only.
     tension : of the membrane.
     elements : of the sector.
+
+    Notes
+    -----
+    Its ``multipliers`` are its memory: 1 for asperities that are wet, 0 for others. One that the
+    membrane has met stays wet until it is torn off by more than the largest pull.
     """
 
     def __init__(
-        self, scene: Scene, solid: Asperities, start: Surface, tension: float, elements: Index
+        self,
+        scene: Scene,
+        solid: Asperities,
+        ring: Ring,
+        start: Surface,
+        tension: float,
+        elements: Index,
     ) -> None:
-        self._scene, self._tension = scene, tension
-        supports = supports_of(scene, solid, start)
+        self._scene, self._tension, self._ring = scene, tension, ring
+        supports = supports_of(scene, solid, ring.radius, start)
         area = supports.share[:, None]
         super().__init__(solid, supports.table, area, 1.0, np.inf, 0.0, start.space, elements)
         self._take(supports)
@@ -85,47 +93,76 @@ class PointSupports(ContactSet):
         """In a word."""
         return "point supports"
 
+    @property
+    def tied(self) -> Index:
+        """(k, local) functions that each asperity couples."""
+        return self.table.functions
+
+    def leaving(self, which: Index, tension: float) -> Array:
+        """Angles in radians at which the membrane leaves spheres, pi minus the contact angles."""
+        assert isinstance(self.solid, (SphereLattice, Spheres))
+        return np.radians(180.0 - self.solid.angle_of(which))
+
     def follow(self, surface: Surface) -> None:
         """Find the asperities anew in a mesh that has moved sideways."""
         assert isinstance(self.solid, (SphereLattice, Spheres))
-        self._take(supports_of(self._scene, self.solid, surface))
+        wet = self.which[self.multipliers[:, 0] > 0.0]
+        self._take(supports_of(self._scene, self.solid, self._ring.radius, surface))
+        self.multipliers = np.isin(self._which, wet).astype(float)
 
     def _take(self, supports: Supports) -> None:
+        assert isinstance(self.solid, (SphereLattice, Spheres))
         self.table, self.area = supports.table, supports.share[:, None]
         self.length = supports.spacing
-        self._reach, self._radius = supports.reach[:, None], supports.radius[:, None]
-        self._which, self._top = supports.which[:, None], supports.top[:, None]
-        tension = self._tension
-        # force of a spot of the effective radius
-        self._unit = 2.0 * np.pi * tension * self._reach**2 / self._radius
+        self._which, self._reach = supports.which[:, None], supports.reach[:, None]
+        self._radius = self.solid.radius_of(self._which)
+        self._top = self.solid.center_of(self._which)[..., 2] + self._radius
+        self._unit = 2.0 * np.pi * self._tension * self._radius
+        self._spots = WetSpots(
+            self.leaving(self._which, 1.0),
+            self._reach / self._radius,
+            self._ring.radius / self._radius,
+            0.5 * self._ring.pressure * self._radius / self._tension,
+        )
+        self.multipliers = np.zeros(self._which.shape)
+        self._before = np.full(self._which.shape, np.inf)
+
+    def _sunk(self, points: Array) -> Array:
+        x = self.table.values @ points[self.table.functions]
+        return np.asarray(self._top - x[..., 2])
+
+    def hold(self, points: Array) -> None:
+        """Remember which asperities a state wets."""
+        depth, spots = self._sunk(points) / self._radius, self._spots
+        steady = np.abs(depth - self._before).max(initial=0.0) <= STEADY
+        self._before = depth
+        wet = held(depth, spots.touching, spots.lowest, (self.multipliers > 0.0) & steady)
+        self.multipliers = wet.astype(float)
 
     def touch(self, points: Array) -> Touch:
         """Gaps and forces for control points (count, 3)."""
-        x = self.table.values @ points[self.table.functions]
-        depth = self._top - x[..., 2]
-        force = self._unit * spot(2.0 * self._radius * depth / self._reach**2)
-        none = np.zeros_like(depth)
-        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape)
-        at = Nearest(-depth, up, none, self._which)
-        return Touch(at, force, none, none, none)
+        depth = self._sunk(points)
+        wet = (depth > self._spots.touching * self._radius) | (self.multipliers > 0.0)
+        spots = self._spots.carried(depth / self._radius)
+        force = np.where(wet, self._unit * spots.load, 0.0)
+        up = np.broadcast_to([0.0, 0.0, 1.0], (*depth.shape, 3))
+        at = Nearest(-depth, up, np.zeros_like(depth), self._which)
+        work = np.where(wet, self._unit * self._radius * spots.work, 0.0)
+        stiffness = np.where(wet, self._unit / self._radius * spots.stiffness, 0.0)
+        return Touch(at, np.maximum(force, 0.0), -work, np.maximum(-force, 0.0), stiffness)
 
     def energy(self, touch: Touch) -> float:
-        """Work done on the springs."""
-        phi = touch.traction / self._unit
-        small, more = np.clip(phi, 1e-300, LARGEST), np.maximum(phi - LARGEST, 0.0)
-        work = 0.5 * small**2 * (0.5 - np.log(small))
-        work -= np.log(LARGEST) * (LARGEST * more + 0.5 * more**2)
-        return float((self.area * self._unit * self._reach**2 / (2.0 * self._radius) * work).sum())
+        """Work done on the spots."""
+        return -float((self.area * touch.gain).sum())
 
     def stiffness(self, touch: Touch) -> Array:
-        """(k, 1) derivative of the force by the depth, ``4 pi gamma / -log(phi)``."""
-        phi = np.clip(touch.traction / self._unit, 1e-300, LARGEST)
-        return np.asarray(-4.0 * np.pi * self._tension / np.log(phi) * (touch.traction > 0.0))
+        """(k, 1) derivative of the force by the depth."""
+        return touch.rise
 
     @property
     def which(self) -> Index:
         """(k,) numbers of the supports."""
-        return self._which[:, 0]
+        return np.asarray(self._which[:, 0])
 
     def near(self, points: Array) -> Index:
         """Functions at all axes."""
@@ -133,38 +170,29 @@ class PointSupports(ContactSet):
 
     def objection(self, touch: Touch) -> str | None:
         """Why the mesh does not do for this law, or None."""
-        phi = float((touch.traction / self._unit).max(initial=0.0))
-        if phi <= WIDEST**2:
+        load = (touch.traction - touch.pull) / self._unit
+        spot = self._spots.size(load) * self._radius
+        wide = float((spot / self._reach)[touch.traction > 0.0].max(initial=0.0))
+        if wide <= WIDEST:
             return None
         return (
-            f"a wet spot is {np.sqrt(phi):.2f} times as wide as the mesh makes a point support, "
+            f"a wet spot is {wide:.2f} times as wide as the mesh makes a point support, "
             f"{WIDEST} is allowed: take fewer discretization.elements, or so many that they "
             "resolve it"
         )
 
 
-def spot(depth: Array) -> Array:
-    """``phi`` with ``phi (1 - log(phi)) = depth``, 0 for negative depths."""
-    from scipy.special import lambertw
-
-    most = LARGEST * (1.0 - np.log(LARGEST))
-    inside = np.clip(depth, 1e-300, most)
-    phi = -inside / lambertw(-inside / np.e, -1).real
-    beyond = LARGEST + (depth - most) / -np.log(LARGEST)
-    return np.where(depth > 0.0, np.where(depth < most, phi, beyond), 0.0)
-
-
-def supports_of(scene: Scene, solid: Asperities, surface: Surface) -> Supports:
+def supports_of(scene: Scene, solid: Asperities, ring: float, surface: Surface) -> Supports:
     """The asperities under the part of a start that moves vertically.
 
     Parameters
     ----------
-    solid, surface : in the scene's scale.
+    solid, ring, surface : in the scene's scale.
 
     Raises
     ------
     GeometryError
-        If the axis of one of them is not found in the mesh.
+        If the ring round one of their axes is not found in the mesh.
     """
     from scipy.spatial import cKDTree
 
@@ -182,28 +210,41 @@ def supports_of(scene: Scene, solid: Asperities, surface: Surface) -> Supports:
     mine = away <= 2.0 * np.sqrt(areas[nearest])
     mine &= in_sector(space, scene.sector, centers, 1e-9 * solid.scale)
     within, centers, nearest = within[mine], centers[mine], nearest[mine]
-    xi = _located(surface, middle.parameters[nearest, 0], centers[:, :2], 1e-12 * surface.size)
+    wanted = (centers[:, None, :2] + ring * RING).reshape(-1, 2)
+    xi = np.repeat(middle.parameters[nearest, 0], len(RING), axis=0)
+    xi = _located(surface, xi, wanted, 1e-12 * surface.size)
     one, two = space.bases
     (e1, u), (e2, v) = one.locate(xi[:, 0]), two.locate(xi[:, 1])
-    inside = np.isin(e1 * two.elements + e2, zone)
-    within, centers, xi = within[inside], centers[inside], xi[inside]
-    place = np.stack([u, v], axis=-1)[inside]
-    functions, rows = space.at(xi, 1)
-    table = Table(
-        functions, rows[0, 0][:, None], rows[1, 0][:, None], rows[0, 1][:, None],
-        np.ones((len(xi), 1)), xi[:, None],
-    )  # fmt: skip
-    size = np.abs(_turned(*(a[:, 0, :2] for a in table.derivatives(surface.points)[1:])))
-    size *= one.sizes[0] * two.sizes[0]
-    radius = solid.radius_of(within)
+    inside = np.isin(e1 * two.elements + e2, zone).reshape(-1, len(RING)).all(axis=1)
+    within, centers = within[inside], centers[inside]
+    xi = xi.reshape(-1, len(RING), 2)[inside]
+    places = np.stack([e1 + u, e2 + v], axis=-1).reshape(-1, len(RING), 2)[inside]
+    table, size = _rings(surface, xi)
     images = np.stack([centers @ m for m in mirrors(scene.sector)], axis=1)
     same = np.linalg.norm(images - centers[:, None], axis=-1) <= 1e-9 * solid.scale
     share = 1.0 / same.sum(axis=1)
     return Supports(
-        table, within, share, centers[:, 2] + radius, radius,
-        np.sqrt(size) * effective_radius(space.degree, place),
+        table, within, share, size * effective_radius(space.degree, places),
         float(np.sqrt(areas.sum() / images.shape[1] / max(1.0, share.sum()))),
     )  # fmt: skip
+
+
+def _rings(surface: Surface, xi: Array) -> tuple[Table, Array]:
+    """Means over rings of points (k, n, 2) in the parameter domain, and (k,) sizes of the elements
+    there."""
+    space = surface.space
+    functions, rows = space.at(xi.reshape(-1, 2), 1)
+
+    def mean(row: Array) -> Array:
+        return np.asarray(row.reshape(len(xi), 1, -1) / xi.shape[1])
+
+    table = Table(
+        functions.reshape(len(xi), -1), mean(rows[0, 0]), mean(rows[1, 0]), mean(rows[0, 1]),
+        np.ones((len(xi), 1)), xi.mean(axis=1)[:, None],
+    )  # fmt: skip
+    one, two = space.bases
+    size = np.abs(_turned(*(a[:, 0, :2] for a in table.derivatives(surface.points)[1:])))
+    return table, np.sqrt(size * one.sizes[0] * two.sizes[0])
 
 
 def _turned(a: Array, b: Array) -> Array:

@@ -19,13 +19,13 @@ TORUS = 32
 """Elements along the side of the square that repeats; 64 change the radius by 4e-8."""
 
 
-def effective_radius(degree: int, place: Array) -> Array:
-    """Radius over the element's size at which a point load is cut off.
+def effective_radius(degree: int, places: Array) -> Array:
+    """Radius over the element's size at which the potential of a load is cut off, seen by the load.
 
     Parameters
     ----------
     degree : of both directions.
-    place : (k, 2) in [0, 1]^2, where in its element the load acts.
+    places : (k, n, 2) points that share each load evenly, in elements from a corner of one.
 
     Returns
     -------
@@ -33,8 +33,9 @@ def effective_radius(degree: int, place: Array) -> Array:
 
     Notes
     -----
-    Potential of the load at its own place on a torus of n x n elements, by Fourier's series over
-    the symbols of mass and stiffness, against the exact one of :data:`ROBIN`.
+    Mean potential at the load's own points on a torus of n x n elements, by Fourier's series over
+    the symbols of mass and stiffness, against the exact one of :data:`ROBIN`, which rises with the
+    square of the distance from the load as the balancing load is even.
     """
     line = uniform_basis(0.0, 1.0, 1, degree)
     turn = 2.0 * np.pi / TORUS * np.arange(TORUS)
@@ -43,6 +44,17 @@ def effective_radius(degree: int, place: Array) -> Array:
     mass, stiffness = (w @ np.abs(line.on_elements(u, k)[0] @ wave) ** 2 for k in (0, 1))
     symbol = np.multiply.outer(stiffness, mass) + np.multiply.outer(mass, stiffness)
     symbol[0, 0] = np.inf
-    one, two = (np.abs(line.on_elements(p)[0] @ wave) ** 2 for p in np.asarray(place).T)
-    potential = ((one @ (1.0 / symbol)) * two).sum(axis=1) / TORUS**2
-    return np.asarray(TORUS * np.exp(-2.0 * np.pi * potential - ROBIN))
+    elements = np.floor(places)
+    within = (places - elements).reshape(-1, 2).T
+    one, two = (
+        (line.on_elements(p)[0] @ wave).reshape(*elements.shape[:2], TORUS)
+        * np.exp(1j * np.multiply.outer(elements[..., axis], turn))
+        for axis, p in enumerate(within)
+    )
+    # load by load: all modes of thousands at once are too many
+    modes = (np.abs(a.T @ b / len(a)) ** 2 / symbol for a, b in zip(one, two, strict=True))
+    potential = np.array([mode.sum() for mode in modes]) / TORUS**2
+    # mean of the squared distances of all pairs of points
+    apart = 2.0 * places.var(axis=1).sum(axis=-1)
+    rise = 0.5 * np.pi * apart / TORUS**2
+    return np.asarray(TORUS * np.exp(rise - 2.0 * np.pi * potential - ROBIN))

@@ -1,6 +1,6 @@
 """Terms: what the membrane pays for, with exact first and second variations."""
 
-from .contact import Contact
+from .contact import Contact, Ring
 from .contact_line import PlaneContactLine
 from .edge_gap import EdgeGap
 from .gap import GapTerm, LocalGap
@@ -28,6 +28,7 @@ __all__ = [
     "NormalLineLoad",
     "PlaneContactLine",
     "Pressure",
+    "Ring",
     "Scale",
     "SphereContactLine",
     "Stabilization",

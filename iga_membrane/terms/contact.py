@@ -13,6 +13,24 @@ from ..solids import Solid
 from .term import Scale, Term
 
 
+@dataclass(frozen=True)
+class Ring:
+    """Where an asperity carries a membrane whose mesh is too coarse for its wet spot.
+
+    Attributes
+    ----------
+    radius : of the ring round its top.
+    pressure : estimated, of the liquid there.
+    """
+
+    radius: float
+    pressure: float
+
+    def scaled(self, scale: Scale) -> Ring:
+        """In the scene's scale."""
+        return Ring(self.radius / scale.length, self.pressure * scale.length / scale.tension)
+
+
 @dataclass(frozen=True, eq=False)
 class Contact(Term):
     """The gap to a solid is not negative, paper section 4.
@@ -25,15 +43,14 @@ class Contact(Term):
     depth : how deep the membrane may dip into the solid between contact points, over the radius
         of the smallest sphere (plane: over the scene's length).
     adhesion : energy per wetted area, ``gamma (1 + cos(theta))``.
-    point_supports : whether the mesh is too coarse for the wet spots, so that each asperity carries
-        the membrane at one point.
+    ring : where each asperity carries the membrane; None where contact is resolved.
     """
 
     solid: Solid
     penalty: float | None = None
     depth: float = 1e-2
     adhesion: float = 0.0
-    point_supports: bool = False
+    ring: Ring | None = None
     name = "contact"
 
     def __post_init__(self) -> None:
@@ -46,4 +63,5 @@ class Contact(Term):
         eps = None if self.penalty is None else self.penalty * scale.length**2 / scale.tension
         adhesion = self.adhesion / scale.tension
         solid = scale.local_solid(self.solid)
-        return Contact(solid, eps, self.depth, adhesion, self.point_supports)
+        ring = None if self.ring is None else self.ring.scaled(scale)
+        return Contact(solid, eps, self.depth, adhesion, ring)

@@ -7,26 +7,16 @@ from taylor import remainder_slopes
 
 import iga_membrane as iga
 from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.point_supports import LARGEST, PointSupports, spot
+from iga_membrane.solver.point_supports import PointSupports
 
 
-def scene_of(model, offset=(0.0, 0.0), spacing=0.07):
+def scene_of(model, offset=(0.0, 0.0), spacing=0.07, angle=180.0):
     return iga.sessile_droplet(
-        iga.SphereLattice(180.0, 0.22 * spacing, spacing, offset=offset),
+        iga.SphereLattice(angle, 0.22 * spacing, spacing, offset=offset),
         volume=UNIT_VOLUME,
         gravity=1.0,
         discretization=iga.Discretization(model=model),
     )
-
-
-def test_the_spring_inverts_its_law():
-    phi = np.linspace(1e-6, LARGEST, 50)
-    assert spot(phi * (1.0 - np.log(phi))) == pytest.approx(phi, rel=1e-9)
-    assert spot(np.array([-1.0, 0.0])) == pytest.approx([0.0, 0.0])
-    # beyond, it goes on with the same stiffness
-    end = LARGEST * (1.0 - np.log(LARGEST))
-    below, above = np.diff(spot(end + np.array([-1e-6, 0.0, 1e-6])))
-    assert below == pytest.approx(above, rel=1e-4)
 
 
 @pytest.mark.parametrize("model", ["full", "eighth"])
@@ -44,16 +34,21 @@ def test_supports_are_where_the_mesh_passes_the_axes(model):
     assert np.unique(whole.which).size == whole.which.size > 290
 
 
+@pytest.mark.parametrize("angle", [180.0, 165.0, 140.0])
 @pytest.mark.parametrize("model", ["full", "eighth"])
-def test_derivatives_of_the_supports_energy(model):
-    scene = scene_of(model)
+def test_derivatives_of_the_supports_energy(model, angle):
+    scene = scene_of(model, angle=angle)
     assembly, rng = Assembly(scene), np.random.default_rng(0)
     contact = assembly.contact
     surface = scene.local_surface()
-    surface = surface.moved(surface.points - [0.0, 0.0, 2e-4])
+    contact.hold(surface.points - [0.0, 0.0, 2e-2])  # all are wet
+    contact.hold(surface.points - [0.0, 0.0, 2e-2])
+    # from pulled on one side to pressed on the other
+    surface = surface.moved(surface.points - (surface.points[:, :1] - 0.3) * [0.0, 0.0, 1.5e-2])
     motion = assembly.spines.on(surface)
-    depth = -contact.touch(surface.points).at.gap
-    assert (depth > 1e-4).any()
+    touch = contact.touch(surface.points)
+    assert (touch.traction > 0.0).any()
+    assert (touch.pull > 0.0).any() == (angle < 180.0)
     unknowns = rng.standard_normal(assembly.size)
     step = 0.02 * motion.displacement(unknowns) / np.abs(motion.displacement(unknowns)).max()
     work = np.einsum("eai,eai->", contact.forces(contact.touch(surface.points)),
@@ -72,15 +67,36 @@ def test_derivatives_of_the_supports_energy(model):
     assert rest > 2.7
 
 
-def test_a_mesh_between_the_laws_is_underresolved():
-    scene = scene_of("eighth", spacing=0.05)
-    assert Assembly(scene).contact.law == "point supports"
-    between = iga.sessile_droplet(
-        scene.substrate,
-        volume=UNIT_VOLUME,
-        gravity=1.0,
-        discretization=iga.Discretization(elements=110),
-    )
-    solution = iga.solve(between, on_fail="return")
-    assert solution.status is iga.Status.UNDERRESOLVED
-    assert "discretization.elements" in solution.message
+@pytest.mark.parametrize("angle", [180.0, 150.0])
+def test_an_asperity_that_was_met_stays_wet_until_it_is_torn_off(angle):
+    scene = scene_of("eighth", angle=angle)
+    contact = Assembly(scene).contact
+    points = scene.local_surface().points
+    lower = points - [0.0, 0.0, 1e-3]
+    contact.hold(lower)
+    wet = contact.multipliers > 0.0
+    assert wet.any()
+    # just out of touch
+    depth = -contact.touch(lower).at.gap
+    apart = lower + [0.0, 0.0, depth.max() + 1e-4]
+    contact.hold(lower)
+    contact.hold(lower + [0.0, 0.0, 1e-9])
+    pulled = contact.touch(apart)
+    assert not (pulled.traction > 0.0).any()
+    assert ((pulled.pull > 0.0) == (wet & (angle < 180.0))).all()
+    far = points + [0.0, 0.0, 1.0]
+    contact.hold(far)
+    assert not contact.multipliers.any()
+
+
+def test_the_law_follows_from_the_mesh():
+    laws = {}
+    for elements in (None, 80, 300):
+        scene = iga.sessile_droplet(
+            iga.SphereLattice(180.0, 0.0125, 0.05),
+            volume=UNIT_VOLUME,
+            gravity=1.0,
+            discretization=iga.Discretization(elements=elements),
+        )
+        laws[elements] = Assembly(scene).contact.law
+    assert laws == {None: "point supports", 80: "point supports", 300: "penalty"}
