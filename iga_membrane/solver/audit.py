@@ -26,6 +26,7 @@ from ..terms import (
     LocalGap,
     NormalLineLoad,
     Pressure,
+    SphereContactLine,
     SurfaceTension,
     Term,
     Volume,
@@ -130,8 +131,7 @@ def audit(
         scatter(total, absolute, motion, contact.table.functions, pull)
     lines = [t for t in terms if isinstance(t, LineTerm)]
     solid = sphere_of(scene)
-    under = BodyDensity() if scene.line_inside else body
-    for edge, edge_pull in edge_forces(scene, surface, solid, under, line_load, 2 * points[0]):
+    for edge, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
         scatter(total, absolute, motion, edge.functions, edge_pull)
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
@@ -187,20 +187,10 @@ def audit(
 
 
 def edge_forces(
-    scene: Scene,
-    surface: Surface,
-    solid: Sphere | None,
-    body: BodyDensity,
-    line_load: Array,
-    points: int,
+    scene: Scene, surface: Surface, line_load: Array, points: int
 ) -> Iterator[tuple[EdgeTable, Array]]:
-    """Nodal forces (elements, local, 3) of the contact lines at the membrane's edges.
-
-    Parameters
-    ----------
-    solid : on which they lie; None is the plane z = 0.
-    body : density under the edge; points : Gauss points along it.
-    """
+    """Nodal forces (elements, local, 3) of the contact lines at the membrane's edges, with
+    Gauss points along them."""
     ring = np.arange(surface.space.bases[0].elements // scene.sector.copies)
     for term in scene.local_terms():
         if not isinstance(term, LineTerm):
@@ -211,12 +201,11 @@ def edge_forces(
         if isinstance(term, NormalLineLoad):
             yield edge, _pressed(term, edge, x, tangent)
             continue
-        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if solid is None else solid.normal(x)
-        outward = np.cross(tangent, up)
-        # the reaction along the solid's normal carries the load and the flux of Q e_z at the edge
+        sphere = term.sphere if isinstance(term, SphereContactLine) else None
+        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if sphere is None else sphere.normal(x)
+        turn = 1.0 if sphere is None else term.turn
         load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
-        level = 0.5 * (_density(body, x) + body.constant) * x[..., 2]
-        density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
+        density = turn * term.strength * np.cross(tangent, up) - load[..., None] * up
         yield edge, edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
 
 
