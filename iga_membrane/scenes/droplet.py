@@ -19,6 +19,7 @@ from ..terms import (
     Contact,
     Gravity,
     Scale,
+    SphereContactLine,
     SurfaceTension,
     Term,
     TrimmedContactLine,
@@ -198,12 +199,13 @@ def sessile_droplet(
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if grains:
-        alone = again(particles=(), hold="none", discretization=Discretization())
+        alone = again(
+            particles=(), hold="none", discretization=Discretization(), contact_line="auto"
+        )
         scene = _with_particles(replace(scene, start_from=built.start_from), alone)
-        line = built.terms[-1]
-        assert isinstance(line, TrimmedContactLine)
-        assert line.toward is not None
-        toward, gamma = line.toward, liquid.surface_tension
+        line, gamma = built.terms[-1], liquid.surface_tension
+        assert isinstance(line, (TrimmedContactLine, SphereContactLine))
+        toward = np.atleast_2d(np.array(line.toward))
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if built.predictor:
         return _with_start(scene, terms, built)
@@ -255,6 +257,8 @@ def _with_particles(scene: Scene, alone: Scene) -> Scene:
         turned = easy + (angle - easy[lead]) / way * (angles - easy) if way else angles
 
         def through(term: Term) -> Term:
+            if isinstance(term, SphereContactLine):
+                return replace(term, sphere=replace(term.sphere, contact_angle=float(turned[0])))
             if not isinstance(term, TrimmedContactLine):
                 return term
             assert isinstance(term.solid, Spheres)

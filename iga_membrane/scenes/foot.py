@@ -66,7 +66,7 @@ class Foot:
     mesh: Mesh
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
     predictor: Sequence[Term] = ()

@@ -43,7 +43,7 @@ def contact_record(
         support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
-    wet = assembly.copies * assembly.edges.wetting(surface.points)[1] * scale.length**2
+    wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
     rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
     return {
         "wet_solids": 1,

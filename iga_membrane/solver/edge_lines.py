@@ -51,7 +51,11 @@ class EdgeLines:
         """Energy of the wetted surface inside the lines and its area."""
         none = BodyDensity()
         energy = sum(t.energy(edge, points, t.strength, none) for t, edge in self.lines)
-        return energy, sum(t.energy(edge, points, 1.0, none) for t, edge in self.lines)
+        return energy, sum(self.wet_areas(points))
+
+    def wet_areas(self, points: Array) -> list[float]:
+        """Area inside each line."""
+        return [t.energy(edge, points, 1.0, BodyDensity()) for t, edge in self.lines]
 
     def gap_values(self, points: Array) -> list[Array]:
         """Gap integrals by number, one array (gap_count,) for each gap."""

@@ -2,8 +2,8 @@
 
 The wetted cap W lies round the end of an axis ``a`` towards the liquid, inside a line that runs
 counterclockwise about it. With ``X`` from the sphere's centre C the cone from C to the line cuts a
-sector S out of the ball, and ``X x X'`` is the cone's area vector, so that for the flux ``F = Q e_z``
-of a body density ``e``
+sector S out of the ball, and ``X x X'`` is the cone's area vector, so that for the flux
+``F = Q e_z`` of a body density ``e``
 
     -int_W F . n dA = -int_S e dV - oint int_0^1 F(C + s X) s ds . (X x X') dxi,
     int_S e dV = e(C) r A_W / 3 + r^2 / 8 oint grad(e) . (X x X') (r / |X|)^2 dxi,
