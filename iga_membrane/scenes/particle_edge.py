@@ -6,8 +6,6 @@ particle's line, and elements are about square in ``log |zeta|``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..arrays import Array
@@ -36,40 +34,31 @@ LARGEST = 0.7
 """Ring of a particle's line at most."""
 
 
-@dataclass(frozen=True, eq=False)
-class EndingPatch:
-    """Where the control points of a droplet lie that ends on a particle.
+def ending_on(meridian: Meridian, particle: Sphere, space: Space) -> Surface:
+    """A droplet of revolution on the plane z = 0, bent to a particle's meniscus, in a space of
+    :func:`ending_space`.
 
-    Attributes
+    Parameters
     ----------
-    space : ring patch; ``xi2`` runs from the plane (0) to the particle (1).
-    particle : in the droplet's scale.
-    pole : its conformal place on the droplet; spot : ``|zeta|`` of its line.
+    meridian, particle : in the droplet's scale.
     """
-
-    space: Space
-    particle: Sphere
-    pole: complex
-    spot: float
-
-    def surface(self, meridian: Meridian) -> Surface:
-        """A droplet of revolution on the plane z = 0, bent to the particle's meniscus."""
-        points, matrix = meridian_interpolation(self.space)
-        size = self.spot**points
-        x = rings(meridian, self.pole, ring_angles(self.space), size)
-        x[:, 0, 2] = 0.0
-        center, r = np.array(self.particle.center), self.particle.radius
-        seat, toward = seat_of(meridian, self.particle)
-        bent = meniscus_at(meridian, self.particle)
-        distance = np.linalg.norm(x - seat, axis=-1) / r
-        rise = r * bent.through(distance) * (1.0 - size**2)
-        x += rise[..., None] * toward
-        away = x[:, -1] - center
-        across = away - (away @ toward)[:, None] * toward
-        across /= np.linalg.norm(across, axis=1, keepdims=True)
-        line = center + r * (np.sin(bent.polar) * across + np.cos(bent.polar) * toward)
-        x += (line - x[:, -1])[:, None] * (points**2)[:, None]
-        return interpolated(self.space, x, matrix)
+    points, matrix = meridian_interpolation(space)
+    pole, spot = _place(meridian, particle)
+    size = spot**points
+    x = rings(meridian, pole, ring_angles(space), size)
+    x[:, 0, 2] = 0.0
+    center, r = np.array(particle.center), particle.radius
+    seat, toward = seat_of(meridian, particle)
+    bent = meniscus_at(meridian, particle)
+    distance = np.linalg.norm(x - seat, axis=-1) / r
+    rise = r * bent.through(distance) * (1.0 - size**2)
+    x += rise[..., None] * toward
+    away = x[:, -1] - center
+    across = away - (away @ toward)[:, None] * toward
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    line = center + r * (np.sin(bent.polar) * across + np.cos(bent.polar) * toward)
+    x += (line - x[:, -1])[:, None] * (points**2)[:, None]
+    return interpolated(space, x, matrix)
 
 
 def seat_of(meridian: Meridian, particle: Sphere) -> tuple[Array, Array]:
@@ -82,8 +71,9 @@ def seat_of(meridian: Meridian, particle: Sphere) -> tuple[Array, Array]:
     return seat, -np.array([*(across * aside), up])
 
 
-def ending_patch(meridian: Meridian, particle: Sphere, mesh: Mesh, sectors: int) -> EndingPatch:
-    """The patch for a droplet that ends on a particle.
+def ending_space(meridian: Meridian, particle: Sphere, mesh: Mesh, sectors: int) -> Space:
+    """Ring patch for a droplet that ends on a particle; ``xi2`` runs from the plane (0) to the
+    particle (1).
 
     Parameters
     ----------
@@ -91,13 +81,17 @@ def ending_patch(meridian: Meridian, particle: Sphere, mesh: Mesh, sectors: int)
     mesh : its ``elements`` lie between the lines; -1 chooses.
     sectors : the ring's elements are a multiple of it.
     """
-    pole = place_on(meridian, particle)
-    line = particle.radius * meniscus_at(meridian, particle).edge
-    spot = min(LARGEST, line / stretch(meridian, pole, 0.0))
+    pole, spot = _place(meridian, particle)
     aspect = 2.0 * np.pi / -np.log(spot)
     finer = float(np.clip(CLOSE / closeness(pole), 1.0, FINEST))
     around = max(finer * ROUND, 2.0 * np.pi * meridian.r[0] / COARSEST)
     along = mesh.elements if mesh.elements > 0 else int(np.ceil(around / aspect))
     around = int(np.ceil(along * aspect / sectors)) * sectors
-    space = ring_space("bspline", mesh.degree, along, sectors, around=around)
-    return EndingPatch(space, particle, pole, spot)
+    return ring_space("bspline", mesh.degree, along, sectors, around=around)
+
+
+def _place(meridian: Meridian, particle: Sphere) -> tuple[complex, float]:
+    """Conformal place of a particle on a droplet, and ``|zeta|`` of its line."""
+    pole = place_on(meridian, particle)
+    line = particle.radius * meniscus_at(meridian, particle).edge
+    return pole, min(LARGEST, line / stretch(meridian, pole, 0.0))

@@ -14,7 +14,7 @@ from ..terms import SphereContactLine, TrimmedContactLine
 from .beside import as_list, check_reach, mirrored_model, towards_liquid
 from .foot import Foot, Question, Rest, rest_of, sector_of
 from .liquid import MODELS, Mesh
-from .particle_edge import ending_patch, seat_of
+from .particle_edge import ending_on, ending_space, seat_of
 from .round_patch import of_droplet, of_pancake, round_patch
 
 
@@ -79,9 +79,9 @@ def _ending_on(parts: Question, local: Sphere, sector: Sector, mesh: Mesh, rest:
     meridian = of_pancake(rest.pancake)
     seat, toward = seat_of(meridian, local)
     check_reach(0, local, float(np.linalg.norm(seat - local.center)) - local.radius, 1.0)
-    patch = ending_patch(meridian, local, mesh, 2 * sector.copies)
-    start = patch.surface(meridian)
-    mesh = replace(mesh, elements=patch.space.bases[1].elements)
+    space = ending_space(meridian, local, mesh, 2 * sector.copies)
+    start = ending_on(meridian, local, space)
+    mesh = replace(mesh, elements=space.bases[1].elements)
     x, y, z = (float(a) for a in scale.axes @ toward)
     gamma = parts.liquid.surface_tension
     line = SphereContactLine(gamma, particle, "xi2=1", toward=(x, y, z))
@@ -89,7 +89,7 @@ def _ending_on(parts: Question, local: Sphere, sector: Sector, mesh: Mesh, rest:
     support = [Sliding("xi2=0", reach=REACH), Sliding("xi2=1", particle)]
 
     def from_alone(alone: Surface) -> Surface:
-        return patch.surface(of_droplet(alone))
+        return ending_on(of_droplet(alone), local, space)
 
     lines = [rest.line, line]
     return Foot(surface, sector, mesh, lines, support, None, start_from=from_alone)
