@@ -8,6 +8,7 @@ Prints the tables of docs/results/particles.md.
 from __future__ import annotations
 
 import sys
+from itertools import product
 from time import process_time
 
 import numpy as np
@@ -78,12 +79,11 @@ def agree() -> None:
     print("| angle | radius | polar | line | status | force | p_base | energy | unknowns | CPU s |")
     print("|---" * 10 + "|")
     x, height = profile(0.5)
-    for angle in (60.0, 90.0, 120.0):
-        for radius in (0.1, 0.2, 0.4):
-            for polar in (20.0, 65.0, 95.0, 120.0):
-                place = at_polar(x, height, polar)
-                if place[1] >= radius:
-                    _compare(angle, radius, polar, place)
+    usual = product((60.0, 90.0, 120.0), (0.1, 0.2, 0.4), (20.0, 65.0, 95.0, 120.0))
+    for angle, radius, polar in [*usual, *product((15.0, 165.0), (0.2,), (65.0, 95.0))]:
+        place = at_polar(x, height, polar)
+        if place[1] >= radius:
+            _compare(angle, radius, polar, place)
 
 
 def _compare(angle: float, radius: float, polar: float, place: np.ndarray) -> None:

@@ -28,8 +28,10 @@ from .round_patch import (
     stretch,
 )
 
-ROUND = 48
+ROUND = 56
 """Elements round a particle at least."""
+ROOM = 2.0
+"""Height over a particle's radius above which a droplet starts with the whole meniscus."""
 LARGEST = 0.7
 """Ring of a particle's line at most."""
 
@@ -51,12 +53,16 @@ def ending_on(meridian: Meridian, particle: Sphere, space: Space) -> Surface:
     seat, toward = seat_of(meridian, particle)
     bent = meniscus_at(meridian, particle)
     distance = np.linalg.norm(x - seat, axis=-1) / r
-    rise = r * bent.through(distance) * (1.0 - size**2)
+    # a plane close by leaves no room for the meniscus
+    room = min(1.0, float(seat[2]) / (ROOM * r))
+    flat = np.arccos(np.clip((seat - center) @ toward / r, -LARGEST, LARGEST))
+    polar = room * bent.polar + (1.0 - room) * flat
+    rise = room * r * bent.through(distance) * (1.0 - size**2)
     x += rise[..., None] * toward
     away = x[:, -1] - center
     across = away - (away @ toward)[:, None] * toward
     across /= np.linalg.norm(across, axis=1, keepdims=True)
-    line = center + r * (np.sin(bent.polar) * across + np.cos(bent.polar) * toward)
+    line = center + r * (np.sin(polar) * across + np.cos(polar) * toward)
     x += (line - x[:, -1])[:, None] * (points**2)[:, None]
     return interpolated(space, x, matrix)
 
