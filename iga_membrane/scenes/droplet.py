@@ -84,11 +84,12 @@ def sessile_droplet(
         units of tension over squared length, length that of a ball of the volume.
     penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
         that exact contact leaves at most and beyond which a state is no success.
-    contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
-        through the sphere or the asperities; "adhesion", it lies on asperities that attract it, for
-        angles near 180 degrees; "auto" chooses.
+    contact_line : "conforming", the membrane ends on it (planes, spheres, one particle beside a
+        plane); "trimmed", it passes through the sphere, the asperities or the particles;
+        "adhesion", it lies on asperities that attract it, for angles near 180 degrees; "auto"
+        chooses.
     particles : spheres on its surface, with contact angles, densities and motions; the membrane
-        passes through them.
+        passes through them, or ends on one.
     membrane : the paper's formulation, with its own penalty, instead of a contact line as the
         membrane's edge; on a plane, below 180 degrees.
 
