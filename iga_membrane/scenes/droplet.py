@@ -26,6 +26,7 @@ from ..terms import (
     Volume,
 )
 from .beside import check_particles
+from .bridge import axes_between, bridge
 from .foot import (
     CONTACT_LINES,
     PREDICTABLE,
@@ -111,7 +112,10 @@ def sessile_droplet(
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
     acceleration = _acceleration(gravity)
+    bridges = asked_substrate is None and len(grains) == 2
     origin, axes = _frame(substrate, free=asked_substrate is None)
+    if bridges:
+        origin, axes = grains[0].center, axes_between(grains)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
@@ -123,7 +127,8 @@ def sessile_droplet(
             "length leaves the range of floating point numbers; choose other units"
         )
     across = float(np.linalg.norm(bond[:2]))
-    if asked_substrate is None and hold == "none" and across > 1e-9 * np.linalg.norm(bond):
+    hangs = asked_substrate is None and not bridges and hold == "none"
+    if hangs and across > 1e-9 * np.linalg.norm(bond):
         raise SceneError(
             "gravity.direction: a free droplet hangs on its particle along gravity, here they "
             'differ; move the particle, or hold the droplet by droplet.hold = "xyz"'
@@ -139,7 +144,10 @@ def sessile_droplet(
     )
     held = "" if hold == "none" else hold
     parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, beside, held)
-    built = with_particles(parts) if beside else foot_of(parts)
+    if bridges:
+        built = bridge(parts, fixed(grains))
+    else:
+        built = with_particles(parts) if beside else foot_of(parts)
     sector = built.sector
     movable = "".join(axis for axis in "xyz" if axis not in sector.mirrored)
     pinned = movable.strip("z") if isinstance(substrate, Plane) and not grains else ""
@@ -191,12 +199,14 @@ def sessile_droplet(
         hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=_hints(substrate, bond, sector, rolls=asked_substrate is not None or not held),
+        warnings=_hints(
+            substrate, bond, sector, rolls=asked_substrate is not None or not (held or bridges)
+        ),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
     if asked_substrate is None:
-        toward = axes[:, 2:].T
+        toward = axes[:, 2] * [[1.0], [-1.0]][: len(grains)]
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if grains:

@@ -40,13 +40,17 @@ def contact_record(
         forces = vertical_forces(at, body, line.gamma, line.contact_angle)
         support = forces.push - forces.line
     else:
-        support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
+        pulls = [
+            pull_on_sphere(scene, assembly, surface, result.multipliers, which).total[2]
+            for which in range(len(assembly.edges.lines))
+        ]
+        support = -float(sum(pulls))
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
     wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
     rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
     return {
-        "wet_solids": 1,
+        "wet_solids": 1 if isinstance(line, PlaneContactLine) else len(assembly.edges.lines),
         "wet_area": wet,
         "wet_fraction": wet / (np.pi * rim**2),
         "max_penetration": checked.penetration * unit if checked else None,

@@ -75,22 +75,25 @@ class Pull:
     pressure: Array
 
 
-def line_on_sphere(scene: Scene, assembly: Assembly, surface: Surface) -> ContactLine:
-    """The whole contact line on the sphere of a scene."""
+def line_on_sphere(
+    scene: Scene, assembly: Assembly, surface: Surface, which: int = 0
+) -> ContactLine:
+    """A whole contact line on a sphere of a scene, by its number."""
     if assembly.trim is not None:
         return trimmed_line(assembly.trim, surface, mirrors(scene.sector))
-    term = sphere_line(scene)
-    assert term is not None
+    term = sphere_lines(scene)[which]
     return contact_line(surface, term.edge, solid=term.sphere)
 
 
-def sphere_line(scene: Scene) -> SphereContactLine | None:
-    """The membrane's line on a sphere, in the scene's scale; None without."""
-    return next((t for t in scene.local_terms() if isinstance(t, SphereContactLine)), None)
+def sphere_lines(scene: Scene) -> list[SphereContactLine]:
+    """The membrane's lines on spheres at its edges, in the scene's scale."""
+    return [t for t in scene.local_terms() if isinstance(t, SphereContactLine)]
 
 
-def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array) -> Pull:
-    """Force on the sphere that carries the membrane's line."""
+def pull_on_sphere(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array, which: int = 0
+) -> Pull:
+    """Force on the sphere that carries one of the membrane's lines, by its number."""
     if assembly.trim is not None:
         own = assembly.density(multipliers)
         trim, slope = assembly.trim, np.array(own.gradient)
@@ -103,14 +106,14 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
             pressed[k] = trim.cap(surface.points, push)
         total = footing(scene, assembly, surface, own).total
         return Pull(total, assembly.whole(pressed))
-    term, edge = next(
+    term, edge = [
         (term, edge) for term, edge in assembly.edges.lines if isinstance(term, SphereContactLine)
-    )
+    ][which]
     points, body = surface.points, assembly.density(multipliers)
     if term.covered:
         return _pull_through(assembly, surface, term.edge)
     total = term.forces(edge, points, term.strength, body).sum(axis=(0, 1))
-    total += assembly.edges.push(points, assembly.line_load(multipliers))
+    total += assembly.edges.push(term.edge, points, assembly.line_load(multipliers))
     _, at = surface.space.edge_place(term.edge)
     fading = 1.0 - np.abs(surface.space.abscissae[..., 1] - at)
     along = points_of(surface.space, fading[..., None])
@@ -164,8 +167,27 @@ def particle_forces(
     multipliers: Array,
     measures: Mapping[str, float],
 ) -> tuple[ParticleForces, ...]:
-    """Forces on the particle on which the membrane ends, of a sheet or a droplet; none where the
-    scene has no particle.
+    """Forces on the particles on which the membrane ends, of a sheet or a droplet; none where the
+    scene has no particle."""
+    particles = scene.particles
+    if scene.kind == "liquid_sheet" and isinstance(scene.substrate, Sphere):
+        particles = (scene.substrate,)
+    return tuple(
+        _on_particle(scene, assembly, surface, multipliers, measures, particle, which)
+        for which, particle in enumerate(particles)
+    )
+
+
+def _on_particle(
+    scene: Scene,
+    assembly: Assembly,
+    surface: Surface,
+    multipliers: Array,
+    measures: Mapping[str, float],
+    particle: Sphere,
+    which: int,
+) -> ParticleForces:
+    """Forces on a particle with the line of its number.
 
     Notes
     -----
@@ -173,13 +195,10 @@ def particle_forces(
     itself is computed without weight.
     """
     scale, sheet = scene.units, scene.kind == "liquid_sheet"
-    particle = scene.particles[0] if scene.particles else scene.substrate
-    if not (sheet or scene.particles) or not isinstance(particle, Sphere):
-        return ()
-    pull = pull_on_sphere(scene, assembly, surface, multipliers)
-    term = sphere_line(scene)
-    line, ball = line_on_sphere(scene, assembly, surface), scale.local_sphere(particle)
-    cap = WettedCap(line, ball) if term is None else WettedCap(line, ball, term.toward)
+    pull = pull_on_sphere(scene, assembly, surface, multipliers, which)
+    line, ball = line_on_sphere(scene, assembly, surface, which), scale.local_sphere(particle)
+    lines = sphere_lines(scene)
+    cap = WettedCap(line, ball, lines[which].toward) if lines else WettedCap(line, ball)
     g, rho = np.array(scene.acceleration), scene.liquid_density
     pressed, body = pull.pressure, assembly.density(multipliers)
     if sheet and g[2] and not assembly.body.gradient[2]:
@@ -199,7 +218,7 @@ def particle_forces(
         *(float(part @ axis) for part in (weight, contact, buoyancy)),
     )
     none, center = np.zeros(3), np.array(particle.center)
-    return (ParticleForces(center, weight, contact, pressed - buoyancy, buoyancy, none, paper),)
+    return ParticleForces(center, weight, contact, pressed - buoyancy, buoyancy, none, paper)
 
 
 def paper_forces(

@@ -255,7 +255,7 @@ class Functional:
         gauge = np.zeros(len(self.spines.shifts))
         missing = np.array(held) - self._targets
         gaps = self.edges.gap_values(points)
-        return interface + body, np.concatenate([missing, *gaps, gauge])
+        return interface + body, np.concatenate([missing, gaps, gauge])
 
     def _integrals(
         self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]
