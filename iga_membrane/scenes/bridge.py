@@ -7,6 +7,7 @@ barrel ``r = linear + bulge (1 - s^2)`` between circles round the axis that has 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from ..surface.supports import Sliding
 from ..terms import SphereContactLine
 from .foot import Foot, Question, sector_of
 
+CLOSE = 0.5
+"""Gap between two particles over a droplet's length across which its bridge is easily solved."""
 WIDEST = 175.0
 """Polar angle, degrees, of the start's circles at most."""
 
@@ -28,6 +31,20 @@ def axes_between(particles: Sequence[Sphere]) -> Array:
     way = np.subtract(particles[1].center, particles[0].center)
     x, y, z = (float(c) for c in way / np.linalg.norm(way))
     return Plane(90.0, normal=(x, y, z)).axes()
+
+
+def moved_apart(particles: Sequence[Sphere], displacement: float) -> Sphere:
+    """The second particle, farther from the first by a displacement."""
+    x, y, z = np.array(particles[1].center) + displacement * axes_between(particles)[:, 2]
+    return replace(particles[1], center=(float(x), float(y), float(z)))
+
+
+def room_between(particles: Sequence[Sphere], length: float) -> float:
+    """How much farther apart two particles are than where a droplet of a length bridges them
+    easily."""
+    one, two = particles
+    away = float(np.linalg.norm(np.subtract(two.center, one.center)))
+    return max(0.0, away - one.radius - two.radius - CLOSE * length)
 
 
 def bridge(parts: Question, particles: Sequence[Sphere]) -> Foot:

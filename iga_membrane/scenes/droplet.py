@@ -26,7 +26,7 @@ from ..terms import (
     Volume,
 )
 from .beside import check_particles
-from .bridge import axes_between, bridge
+from .bridge import axes_between, bridge, moved_apart, room_between
 from .foot import (
     CONTACT_LINES,
     PREDICTABLE,
@@ -72,7 +72,7 @@ def sessile_droplet(
     ----------
     substrate : the solid with its contact angle: ``Plane``, ``Sphere``, ``SphereLattice``,
         ``Spheres``, or any ``Solid`` of your own at 180 degrees; None for a droplet about the
-        origin that touches nothing but a particle.
+        origin that touches nothing but a particle, or one that bridges two wherever they are.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
@@ -179,7 +179,13 @@ def sessile_droplet(
     )
     described = _describe(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
-    if bond.any() and has_way:
+    if bridges and (near := -room_between(grains, length)) < 0.0:
+
+        def apart(displacement: float) -> Scene:
+            return again(particles=[grains[0], moved_apart(grains, displacement)])
+
+        ramp = Ramp("particle[1] displacement", (near, 0.0), apart)
+    elif bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
     elif asked_substrate is None and held:
         values = (0.0, pulled_by(grains[0], length))

@@ -57,7 +57,7 @@ def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     for term in scene.local_terms():
         if isinstance(term, SphereContactLine):
             line = contact_line(surface, term.edge, solid=term.sphere)
-            found.append(LineOnSolid(0, line))
+            found.append(LineOnSolid(sum(each.solid >= 0 for each in found), line))
         elif isinstance(term, PlaneContactLine):
             found.append(LineOnSolid(-1, contact_line(surface, term.edge)))
     return tuple(LineOnSolid(each.solid, _world(scene, each.line)) for each in found)
