@@ -1,6 +1,6 @@
 """Particles on droplets and sheets: convergence, where they are solved, pull-off, free droplets.
 
-    OMP_NUM_THREADS=1 python benchmarks/particles.py [converge|free|pull|resting|grid ...]
+    OMP_NUM_THREADS=1 python benchmarks/particles.py [converge|agree|free|pull|resting|grid ...]
 
 Prints the tables of docs/results/particles.md.
 """
@@ -8,6 +8,7 @@ Prints the tables of docs/results/particles.md.
 from __future__ import annotations
 
 import sys
+from itertools import product
 from time import process_time
 
 import numpy as np
@@ -26,7 +27,9 @@ def profile(bond: float) -> tuple[np.ndarray, float]:
     return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2]], axis=1), alone.measures["height"]
 
 
-def on_droplet(angle: float, radius: float, place: np.ndarray, bond: float, **mesh) -> iga.Scene:
+def on_droplet(
+    angle: float, radius: float, place: np.ndarray, bond: float, line: str = "auto", **mesh
+) -> iga.Scene:
     particle = iga.Sphere(angle, radius, (float(place[0]), 0.0, float(place[1])), 1.0)
     return iga.sessile_droplet(
         PLANE,
@@ -34,6 +37,7 @@ def on_droplet(angle: float, radius: float, place: np.ndarray, bond: float, **me
         gravity=bond,
         hold="x",
         particles=[particle],
+        contact_line=line,
         discretization=iga.Discretization(**mesh),
     )
 
@@ -51,16 +55,57 @@ def at_polar(x: np.ndarray, height: float, polar: float) -> np.ndarray:
 def converge() -> None:
     x, height = profile(0.5)
     place = at_polar(x, height, 95.0)
-    print("| elements | unknowns | F_x | F_z | horizontal balance | iterations | CPU s |")
-    print("|---|---|---|---|---|---|---|")
-    for elements in (12, 16, 24, 36, 54):
+    print("| line | elements | unknowns | F_x | F_z | horizontal balance | iterations | CPU s |")
+    print("|---|---|---|---|---|---|---|---|")
+    for line, meshes in {
+        "trimmed": (12, 16, 24, 36, 54),
+        "conforming": (9, 12, 18, 27, 40),
+    }.items():
+        for elements in meshes:
+            start = process_time()
+            found = iga.solve(on_droplet(90.0, 0.2, place, 0.5, line, elements=elements))
+            force = pull(found)
+            off = abs(found.hold_force[0] - force[0]) / np.linalg.norm(force)
+            print(
+                f"| {line} | {elements} | {found.unknowns} | {force[0]:.7f} | {force[2]:.7f} | "
+                f"{off:.1e} | {found.newton_iterations} | {process_time() - start:.1f} |",
+                flush=True,
+            )
+
+
+def agree() -> None:
+    """Default meshes of both discretizations against a conforming one of twice the elements: worst
+    error of a component of the force over the force, of p_base and of the energy."""
+    print("| angle | radius | polar | line | status | force | p_base | energy | unknowns | CPU s |")
+    print("|---" * 10 + "|")
+    x, height = profile(0.5)
+    usual = product((60.0, 90.0, 120.0), (0.1, 0.2, 0.4), (20.0, 65.0, 95.0, 120.0))
+    for angle, radius, polar in [*usual, *product((15.0, 165.0), (0.2,), (65.0, 95.0))]:
+        place = at_polar(x, height, polar)
+        if place[1] >= radius:
+            _compare(angle, radius, polar, place)
+
+
+def _compare(angle: float, radius: float, polar: float, place: np.ndarray) -> None:
+    found = {}
+    for line in ("conforming", "trimmed"):
         start = process_time()
-        found = iga.solve(on_droplet(90.0, 0.2, place, 0.5, elements=elements))
-        force = pull(found)
-        off = abs(found.hold_force[0] - force[0]) / np.linalg.norm(force)
+        solution = iga.solve(on_droplet(angle, radius, place, 0.5, line), LIMIT, on_fail="return")
+        found[line] = solution, process_time() - start
+    elements = 2 * found["conforming"][0].scene.surface.space.bases[1].elements
+    fine = iga.solve(
+        on_droplet(angle, radius, place, 0.5, "conforming", elements=elements),
+        LIMIT,
+        on_fail="return",
+    )
+    size = np.linalg.norm(pull(fine))
+    for line, (solution, seconds) in found.items():
+        off = [np.abs(pull(solution) - pull(fine)).max() / size]
+        off += [abs(solution.measures[k] / fine.measures[k] - 1.0) for k in ("p_base", "energy")]
+        errors = " | ".join(f"{e:.0e}" for e in off) if fine.success else "| |"
         print(
-            f"| {elements} | {found.unknowns} | {force[0]:.7f} | {force[2]:.7f} | {off:.1e} | "
-            f"{found.newton_iterations} | {process_time() - start:.1f} |",
+            f"| {angle:g} | {radius:g} | {polar:g} | {line} | {solution.status.name} | {errors} | "
+            f"{solution.unknowns} | {seconds:.1f} |",
             flush=True,
         )
 
@@ -158,7 +203,14 @@ def grid() -> None:
     print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
 
 
-STUDIES = {"converge": converge, "free": free, "pull": pulled, "resting": resting, "grid": grid}
+STUDIES = {
+    "converge": converge,
+    "agree": agree,
+    "free": free,
+    "pull": pulled,
+    "resting": resting,
+    "grid": grid,
+}
 
 if __name__ == "__main__":
     for study in sys.argv[1:] or STUDIES:

@@ -72,15 +72,25 @@ def towards_liquid(start: Surface, particles: Sequence[Sphere], length: float) -
         distance = np.linalg.norm(x - np.array(each.center), axis=1)
         nearest = int(distance.argmin())
         gap = float(distance[nearest]) - each.radius
-        if gap > FAR * length:
-            raise SceneError(
-                f"particle[{i}].center = {list(each.center)}: {gap:g} away from the droplet's "
-                "surface, farther than a meniscus reaches; move it to the surface"
-            )
+        check_reach(i, each, gap, length)
         # in a mirror plane of the particle's own the sample may lie on either side
         axis = np.where(np.abs(each.center) > 1e-9 * length, -normals[nearest], 0.0)
         axes.append(axis / np.linalg.norm(axis))
     return np.array(axes)
+
+
+def check_reach(i: int, particle: Sphere, gap: float, length: float) -> None:
+    """Refuse a particle whose gap to the start is wider than a meniscus.
+
+    Raises
+    ------
+    SceneError
+    """
+    if gap > FAR * length:
+        raise SceneError(
+            f"particle[{i}].center = {list(particle.center)}: {gap:g} away from the droplet's "
+            "surface, farther than a meniscus reaches; move it to the surface"
+        )
 
 
 def mirrored_model(particles: Sequence[Sphere], smallest: Model) -> Model:

@@ -19,12 +19,14 @@ from ..terms import (
     Contact,
     Gravity,
     Scale,
+    SphereContactLine,
     SurfaceTension,
     Term,
     TrimmedContactLine,
     Volume,
 )
 from .beside import check_particles
+from .bridge import axes_between, bridge, moved_apart, room_between
 from .foot import (
     CONTACT_LINES,
     PREDICTABLE,
@@ -70,7 +72,7 @@ def sessile_droplet(
     ----------
     substrate : the solid with its contact angle: ``Plane``, ``Sphere``, ``SphereLattice``,
         ``Spheres``, or any ``Solid`` of your own at 180 degrees; None for a droplet about the
-        origin that touches nothing but a particle.
+        origin that touches nothing but a particle, or one that bridges two wherever they are.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
     gravity : acceleration >= 0 along -z, or a vector.
@@ -83,11 +85,12 @@ def sessile_droplet(
         units of tension over squared length, length that of a ball of the volume.
     penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
         that exact contact leaves at most and beyond which a state is no success.
-    contact_line : "conforming", the membrane ends on it (planes, spheres); "trimmed", it passes
-        through the sphere or the asperities; "adhesion", it lies on asperities that attract it, for
-        angles near 180 degrees; "auto" chooses.
+    contact_line : "conforming", the membrane ends on it (planes, spheres, one particle beside a
+        plane); "trimmed", it passes through the sphere, the asperities or the particles;
+        "adhesion", it lies on asperities that attract it, for angles near 180 degrees; "auto"
+        chooses.
     particles : spheres on its surface, with contact angles, densities and motions; the membrane
-        passes through them.
+        passes through them, or ends on one.
     membrane : the paper's formulation, with its own penalty, instead of a contact line as the
         membrane's edge; on a plane, below 180 degrees.
 
@@ -109,7 +112,10 @@ def sessile_droplet(
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
     acceleration = _acceleration(gravity)
+    bridges = asked_substrate is None and len(grains) == 2
     origin, axes = _frame(substrate, free=asked_substrate is None)
+    if bridges:
+        origin, axes = grains[0].center, axes_between(grains)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
@@ -121,7 +127,8 @@ def sessile_droplet(
             "length leaves the range of floating point numbers; choose other units"
         )
     across = float(np.linalg.norm(bond[:2]))
-    if asked_substrate is None and hold == "none" and across > 1e-9 * np.linalg.norm(bond):
+    hangs = asked_substrate is None and not bridges and hold == "none"
+    if hangs and across > 1e-9 * np.linalg.norm(bond):
         raise SceneError(
             "gravity.direction: a free droplet hangs on its particle along gravity, here they "
             'differ; move the particle, or hold the droplet by droplet.hold = "xyz"'
@@ -137,7 +144,10 @@ def sessile_droplet(
     )
     held = "" if hold == "none" else hold
     parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, beside, held)
-    built = with_particles(parts) if beside else foot_of(parts)
+    if bridges:
+        built = bridge(parts, fixed(grains))
+    else:
+        built = with_particles(parts) if beside else foot_of(parts)
     sector = built.sector
     movable = "".join(axis for axis in "xyz" if axis not in sector.mirrored)
     pinned = movable.strip("z") if isinstance(substrate, Plane) and not grains else ""
@@ -169,7 +179,13 @@ def sessile_droplet(
     )
     described = _describe(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
-    if bond.any() and has_way:
+    if bridges and (near := -room_between(grains, length)) < 0.0:
+
+        def apart(displacement: float) -> Scene:
+            return again(particles=[grains[0], moved_apart(grains, displacement)])
+
+        ramp = Ramp("particle[1] displacement", (near, 0.0), apart)
+    elif bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
     elif asked_substrate is None and held:
         values = (0.0, pulled_by(grains[0], length))
@@ -189,21 +205,24 @@ def sessile_droplet(
         hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=_hints(substrate, bond, sector, rolls=asked_substrate is not None or not held),
+        warnings=_hints(
+            substrate, bond, sector, rolls=asked_substrate is not None or not (held or bridges)
+        ),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
     if asked_substrate is None:
-        toward = axes[:, 2:].T
+        toward = axes[:, 2] * [[1.0], [-1.0]][: len(grains)]
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if grains:
-        alone = again(particles=(), hold="none", discretization=Discretization())
+        alone = again(
+            particles=(), hold="none", discretization=Discretization(), contact_line="auto"
+        )
         scene = _with_particles(replace(scene, start_from=built.start_from), alone)
-        line = built.terms[-1]
-        assert isinstance(line, TrimmedContactLine)
-        assert line.toward is not None
-        toward, gamma = line.toward, liquid.surface_tension
+        line, gamma = built.terms[-1], liquid.surface_tension
+        assert isinstance(line, (TrimmedContactLine, SphereContactLine))
+        toward = np.atleast_2d(np.array(line.toward))
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if built.predictor:
         return _with_start(scene, terms, built)
@@ -255,6 +274,8 @@ def _with_particles(scene: Scene, alone: Scene) -> Scene:
         turned = easy + (angle - easy[lead]) / way * (angles - easy) if way else angles
 
         def through(term: Term) -> Term:
+            if isinstance(term, SphereContactLine):
+                return replace(term, sphere=replace(term.sphere, contact_angle=float(turned[0])))
             if not isinstance(term, TrimmedContactLine):
                 return term
             assert isinstance(term.solid, Spheres)

@@ -67,7 +67,7 @@ class Foot:
     mesh: Mesh
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
     predictor: Sequence[Term] = ()
@@ -362,7 +362,8 @@ def rest_of(substrate: Plane | Sphere, liquid: Liquid, scale: Scale, bond: float
         return Rest(pancake, 0.0, PlaneContactLine(gamma, angle), Sliding("xi2=0"))
     ball = scale.local_sphere(substrate)
     polar, cap = drop_on_sphere(angle, ball.radius, unit)
-    line = SphereContactLine(gamma, substrate)
+    x, y, z = (float(a) for a in scale.axes[:, 2])
+    line = SphereContactLine(gamma, substrate, toward=(x, y, z))
     lift = ball.center[2] + ball.radius * np.cos(polar)
     return Rest(cap, float(lift), line, Sliding("xi2=0", substrate))
 

@@ -19,20 +19,24 @@ HOLDS = ("none", "xyz")
 
 
 def seat_of(particles: Sequence[Sphere], hold: str) -> Sphere:
-    """The particle that carries a free droplet.
+    """The particle that carries a free droplet, the first of two that it bridges.
 
     Raises
     ------
     SceneError
-        None or several particles, one about the origin or moving without a hold, a hold along some
-        axes only.
+        None or more than two particles, two and a hold, one about the origin or moving without a
+        hold, a hold along some axes only.
     """
-    if len(particles) != 1:
+    if len(particles) not in (1, 2):
         raise SceneError(
-            f"particle: {len(particles)} given; a free droplet is carried by exactly one, more are "
-            "not available yet: give one, or a substrate"
+            f"particle: {len(particles)} given; a free droplet is carried by one or bridges two, "
+            "more are not available yet: give fewer, or a substrate"
         )
     particle = particles[0]
+    if len(particles) == 2:
+        if hold != "none":
+            raise SceneError(f'droplet.hold = "{hold}": two particles hold a droplet; leave it out')
+        return replace(particle, motion="fixed")
     if not np.linalg.norm(particle.center) > 0.0:
         raise SceneError(
             "particle[0].center = [0, 0, 0]: a free droplet lies about the origin; put the "

@@ -22,7 +22,7 @@ from ..surface.reparametrize import interpolated
 from ..surface.ring import drop_space, meridian_interpolation
 from ..surface.surface import Surface
 from .liquid import Mesh
-from .start import Pancake, meniscus
+from .start import Funnel, Pancake, meniscus
 
 ROUND, ALONG = 48, 14
 """Elements round a particle, and from the droplet's line to the particle's at least."""
@@ -63,12 +63,7 @@ class RoundPatch:
         space = self.space
         points, matrix = meridian_interpolation(space)
         size = self.spot * np.sinh(self.span * (1.0 - points))
-        aim = self.pole / abs(self.pole) if self.pole else 1.0
-        half = 0.5 * (ring_angles(space) - np.angle(aim))[:, None]
-        # Moebius maps act on half the azimuth's tangent by a factor
-        factor = max(_closeness(self.pole), CLOSE) ** -size
-        turn = aim * np.exp(2j * np.arctan2(factor * np.sin(half), np.cos(half)))
-        values = _droplet(meridian, self.pole, size * turn)
+        values = rings(meridian, self.pole, ring_angles(space), size)
         values[:, 0, 2] = 0.0
         # in its place the derivative at the pole, against which the ring shrinks
         step = 1e-3 * self.spot
@@ -76,6 +71,17 @@ class RoundPatch:
         top = _droplet(meridian, self.pole, np.zeros(1))
         values[:, -2] = (top - ring) * (self.spot * self.span / step)
         return interpolated(space, values, matrix)
+
+
+def rings(meridian: Meridian, pole: complex, azimuth: Array, size: Array) -> Array:
+    """(n1, n2, 3) points of a droplet on rings ``|zeta| = size`` (n2,) round a pole, at the azimuth
+    of ``zeta`` (n1,) near it."""
+    aim = pole / abs(pole) if pole else 1.0
+    half = 0.5 * (azimuth - np.angle(aim))[:, None]
+    # Moebius maps act on half the azimuth's tangent by a factor
+    factor = max(closeness(pole), CLOSE) ** -size
+    turn = aim * np.exp(2j * np.arctan2(factor * np.sin(half), np.cos(half)))
+    return _droplet(meridian, pole, size * turn)
 
 
 def round_patch(
@@ -89,21 +95,19 @@ def round_patch(
     mesh : its ``elements`` lie between the droplet's line and the pole; -1 chooses.
     sectors : the ring's elements are a multiple of it.
     """
-    places = [_place(meridian, each) for each in particles]
+    places = [place_on(meridian, each) for each in particles]
     line = [_line(meridian, each) for each in particles]
     least = int(np.argmin(line))
     pole = places[least]
 
     def scale_at(zeta: complex) -> float:
-        beside = 0.999 * zeta + 1e-4  # nearer to the middle of the disc
-        one, other = _droplet(meridian, pole, np.array([zeta, beside]))
-        return float(np.linalg.norm(one - other)) / abs(zeta - beside)
+        return stretch(meridian, pole, zeta)
 
     spot = min(0.5, line[least] / scale_at(0.0))
     span = float(np.arcsinh(1.0 / spot))
     along, outside = mesh.elements, 1.0 - np.arcsinh(1.0) / span
     if along < 0:
-        finer = float(np.clip(CLOSE / _closeness(pole), 1.0, FINEST))
+        finer = float(np.clip(CLOSE / closeness(pole), 1.0, FINEST))
         around = max(finer * ROUND, 2.0 * np.pi * meridian.r[0] / COARSEST)
         along = int(np.ceil(max(finer * ALONG / outside, around * span / (2.0 * np.pi))))
         for own, place in zip(line, places, strict=True):
@@ -115,7 +119,14 @@ def round_patch(
     return RoundPatch(space, pole, spot, span)
 
 
-def _closeness(pole: complex) -> float:
+def stretch(meridian: Meridian, pole: complex, zeta: complex) -> float:
+    """Length on a droplet over that of ``zeta``."""
+    beside = 0.999 * zeta + 1e-4  # nearer to the middle of the disc
+    one, other = _droplet(meridian, pole, np.array([zeta, beside]))
+    return float(np.linalg.norm(one - other)) / abs(zeta - beside)
+
+
+def closeness(pole: complex) -> float:
     """Of the pole to the droplet's line: 1 in the middle, 0 on the line."""
     return (1.0 - abs(pole)) / (1.0 + abs(pole))
 
@@ -152,24 +163,27 @@ def _meridian(r: Array, z: Array) -> Meridian:
     return Meridian(r, z, normal / np.linalg.norm(normal, axis=1, keepdims=True))
 
 
-def _line(meridian: Meridian, particle: Sphere) -> float:
-    """Estimated radius of the contact line on a particle."""
-    k = _nearest(meridian, particle)
+def meniscus_at(meridian: Meridian, particle: Sphere) -> Funnel:
+    """The meniscus of small slopes where a droplet is nearest to a particle."""
+    k = nearest(meridian, particle)
     x, y, z = particle.center
     beside = np.array([meridian.r[k] - np.hypot(x, y), meridian.z[k] - z])
-    edge = meniscus(particle, float(beside @ meridian.normal[k]), 1.0).edge
-    return particle.radius * max(edge, NARROW)
+    return meniscus(particle, float(beside @ meridian.normal[k]), 1.0)
 
 
-def _nearest(meridian: Meridian, particle: Sphere) -> int:
+def _line(meridian: Meridian, particle: Sphere) -> float:
+    """Estimated radius of the contact line on a particle."""
+    return particle.radius * max(meniscus_at(meridian, particle).edge, NARROW)
+
+
+def nearest(meridian: Meridian, particle: Sphere) -> int:
     """Place on a meridian that is nearest to a particle."""
     x, y, z = particle.center
     return int(np.hypot(meridian.r - np.hypot(x, y), meridian.z - z).argmin())
 
 
-def _place(meridian: Meridian, particle: Sphere) -> complex:
+def place_on(meridian: Meridian, particle: Sphere) -> complex:
     """Conformal place of the point of a droplet that is nearest to a particle, 0 at the top."""
     x, y, _ = particle.center
-    nearest = _nearest(meridian, particle)
-    size = float(meridian.log[0] - meridian.log[nearest])
+    size = float(meridian.log[0] - meridian.log[nearest(meridian, particle)])
     return complex(np.exp(size + 1j * np.arctan2(y, x)))

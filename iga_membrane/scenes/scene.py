@@ -117,7 +117,7 @@ class Scene:
     supports : how edges and symmetry restrict the motion.
     scale : units and frame of the computation; by default the surface's size and the tension.
         Sliding edges lie in z = 0 of its frame.
-    grading : spread of the control points along the meridians.
+    grading : spread of the control points along the meridians; None leaves them where they are.
     directions : (count, 3) in which the control points move, the same at every step; if None the
         normals of the current surface.
     motion : "spines", one unknown per control point, or "cartesian", three, which needs a
@@ -143,7 +143,7 @@ class Scene:
     terms: Sequence[Term]
     supports: Sequence[Support] = ()
     scale: Scale | None = None
-    grading: Grading = field(default_factory=Grading)
+    grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = field(default=None, repr=False)
     motion: str = "spines"
     ramp: Ramp | None = field(default=None, repr=False)

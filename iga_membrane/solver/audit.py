@@ -26,15 +26,17 @@ from ..terms import (
     LocalGap,
     NormalLineLoad,
     Pressure,
+    SphereContactLine,
     SurfaceTension,
     Term,
     Volume,
 )
 from .assembly import TINY
 from .contact import ContactSet
-from .contact_line import ContactLine, contact_line, vertical_forces
+from .contact_line import contact_line, vertical_forces
 from .measures import sphere_of
 from .point_supports import PointSupports
+from .wetted_cap import WettedCap
 
 
 @dataclass(frozen=True)
@@ -47,13 +49,14 @@ class Audit:
     volume : over the prescribed volume; 0 where none is prescribed.
     force : vertical force balance ``p A_wet - line - weight`` over ``p A_wet`` plus the line's
         force, with the line's force from Young's angle.
-    sideways : horizontal force of the solid on the liquid over its weight, where gravity has none
-        and the model does not rule it out.
+    sideways : horizontal force of the solids on the liquid over its weight, where gravity has none
+        and the model does not rule it out; beside a particle over the same as ``force``.
     line : the same with the line's force from the spline's own tangents: converges slower, so it
         tells how well the line is resolved.
     angle : mean cosine of the measured contact angle minus that of Young's.
     penetration : depth in the solid on a sampling four times denser than the quadrature, over the
         scene's length (plane) or the sphere's radius; there also the line's distance from it.
+    indentation : the same of a particle beside a plane, over its radius.
     deepest : the point of the sampling that lies deepest, or nearest to the solid, in the scene's
         scale; None without a solid.
     """
@@ -65,6 +68,7 @@ class Audit:
     line: float = 0.0
     angle: float = 0.0
     penetration: float = 0.0
+    indentation: float = 0.0
     deepest: tuple[float, float, float] | None = None
 
     @property
@@ -130,8 +134,7 @@ def audit(
         scatter(total, absolute, motion, contact.table.functions, pull)
     lines = [t for t in terms if isinstance(t, LineTerm)]
     solid = sphere_of(scene)
-    under = BodyDensity() if scene.line_inside else body
-    for edge, edge_pull in edge_forces(scene, surface, solid, under, line_load, 2 * points[0]):
+    for edge, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
         scatter(total, absolute, motion, edge.functions, edge_pull)
     size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
     residual = float(np.linalg.norm(total[:-1])) / size
@@ -159,48 +162,61 @@ def audit(
     if not lines:
         depth = max(0.0, -lowest) / surface.size
         return Audit(residual, missing_volume(terms, inside), penetration=depth)
-    line = contact_line(surface, lines[0].edge, 2 * points[0], solid)
-    cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + lines[0].strength / tension
-    free = not any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports)
-    gap, place = _nearest(surface, points, sector, solid)
-    depth = max(0.0, -gap)
-    if solid is not None:
-        inside += _under_cap(line, solid)
-        depth = max(depth, float(np.abs(solid.gap(line.position)).max())) / solid.radius
-    if solid is not None or not free:
-        return Audit(
-            residual, missing_volume(terms, inside), angle=cosine, penetration=depth, deepest=place
-        )
+    cosine, sunk, depth, pull = 0.0, 0.0, 0.0, np.zeros(3)
+    place, foot = None, None
+    for term in lines:
+        sphere = term.sphere if isinstance(term, SphereContactLine) else None
+        line = contact_line(surface, term.edge, 2 * points[0], sphere)
+        off = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + term.strength / tension
+        cosine = max(cosine, off, key=abs)
+        gap, nearest = _nearest(surface, points, sector, sphere)
+        place = place or nearest
+        if not isinstance(term, SphereContactLine):
+            depth, foot = max(0.0, -gap), line
+            continue
+        cap = WettedCap(line, term.sphere, term.toward)
+        inside -= cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
+        pull += _pull(cap, body, tension)
+        away = float(np.abs(term.sphere.gap(line.position)).max())
+        sunk = max(sunk, away / term.sphere.radius, -gap / term.sphere.radius)
+    missing = missing_volume(terms, inside)
+    if foot is None:
+        return Audit(residual, missing, angle=cosine, penetration=sunk, deepest=place)
+    if any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports):
+        return Audit(residual, missing, angle=cosine, penetration=depth, deepest=place)
     angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
-    forces = vertical_forces(line, body, tension, float(angle))
-    weight = body.gradient[2] * inside
+    forces = vertical_forces(foot, body, tension, float(angle))
+    weight = body.gradient[2] * inside + pull[2]
     scale = abs(forces.push) + abs(forces.line) + abs(weight)
+    loose = [bool(pull.any()) and axis not in sector.mirrored for axis in "xy"]
+    unbalanced = (np.array(body.gradient[:2]) * inside + pull[:2]) * loose
     return Audit(
         residual,
-        missing_volume(terms, inside),
+        missing,
         force=abs(forces.push - forces.line - weight) / scale,
+        sideways=float(np.hypot(*unbalanced)) / scale,
         line=abs(forces.push - forces.measured - weight) / scale,
         angle=cosine,
         penetration=depth,
+        indentation=sunk,
         deepest=place,
     )
 
 
-def edge_forces(
-    scene: Scene,
-    surface: Surface,
-    solid: Sphere | None,
-    body: BodyDensity,
-    line_load: Array,
-    points: int,
-) -> Iterator[tuple[EdgeTable, Array]]:
-    """Nodal forces (elements, local, 3) of the contact lines at the membrane's edges.
+def _pull(cap: WettedCap, body: BodyDensity, tension: float) -> Array:
+    """(3,) force of membrane and liquid on a sphere, the membrane at Young's angle: along
+    ``sin(theta) n + cos(theta) n x t``."""
+    line, angle = cap.line, np.radians(cap.sphere.contact_angle)
+    normal = cap.sphere.normal(line.position)
+    along = np.sin(angle) * normal + np.cos(angle) * np.cross(normal, line.tangent)
+    return np.asarray(tension * line.arc @ along + cap.push(body))
 
-    Parameters
-    ----------
-    solid : on which they lie; None is the plane z = 0.
-    body : density under the edge; points : Gauss points along it.
-    """
+
+def edge_forces(
+    scene: Scene, surface: Surface, line_load: Array, points: int
+) -> Iterator[tuple[EdgeTable, Array]]:
+    """Nodal forces (elements, local, 3) of the contact lines at the membrane's edges, with
+    Gauss points along them."""
     ring = np.arange(surface.space.bases[0].elements // scene.sector.copies)
     for term in scene.local_terms():
         if not isinstance(term, LineTerm):
@@ -211,12 +227,11 @@ def edge_forces(
         if isinstance(term, NormalLineLoad):
             yield edge, _pressed(term, edge, x, tangent)
             continue
-        up = np.broadcast_to([0.0, 0.0, 1.0], x.shape) if solid is None else solid.normal(x)
-        outward = np.cross(tangent, up)
-        # the reaction along the solid's normal carries the load and the flux of Q e_z at the edge
+        up, turn = np.broadcast_to([0.0, 0.0, 1.0], x.shape), 1.0
+        if isinstance(term, SphereContactLine):
+            up, turn = term.sphere.normal(x), term.turn
         load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
-        level = 0.5 * (_density(body, x) + body.constant) * x[..., 2]
-        density = term.strength * outward - (load + level * outward[..., 2])[..., None] * up
+        density = turn * term.strength * np.cross(tangent, up) - load[..., None] * up
         yield edge, edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
 
 
@@ -266,16 +281,6 @@ def _depth(
 
 def _place(x: Array) -> Place:
     return float(x[0]), float(x[1]), float(x[2])
-
-
-def _under_cap(line: ContactLine, solid: Sphere) -> float:
-    """Flux of ``z e_z`` out of the liquid through the wetted cap, as an integral along its line."""
-    away = line.position - np.array(solid.center)
-    turn = (away[:, 0] * line.tangent[:, 1] - away[:, 1] * line.tangent[:, 0]) * line.arc
-    t = away[:, 2] / np.linalg.norm(away, axis=1)
-    r, c = solid.radius, solid.center[2]
-    cap = -(r**2) * (c * (1 - t**2) / 2 + r * (1 - t**3) / 3)
-    return float((cap / (away[:, 0] ** 2 + away[:, 1] ** 2)) @ turn)
 
 
 def _density(body: BodyDensity, x: Array) -> Array:

@@ -21,8 +21,8 @@ class ContactLine:
 
     Attributes
     ----------
-    position, tangent, conormal : (k, 3); unit tangent ``a_c`` along the edge's parameter, unit
-        conormal tangent to the membrane and out of it.
+    position, tangent, conormal : (k, 3); unit tangent ``a_c`` that has the membrane to its left as
+        seen from its normal's side, unit conormal tangent to the membrane and out of it.
     angle : (k,) between membrane and solid through the liquid, radians.
     arc : (k,) quadrature weights of arc length.
     """
@@ -60,11 +60,9 @@ def contact_line(
     xi[:, 1 - along] = place
     k = surface.at(xi, 1)
     speed = np.linalg.norm(k.tangents[:, along], axis=1)
-    tangent = k.tangents[:, along] / speed[:, None]
+    left = 1.0 if (along == 0) == (end == 0) else -1.0
+    tangent = left * k.tangents[:, along] / speed[:, None]
     conormal = np.cross(tangent, k.normal)
-    # out of the membrane: against the other tangent at its start, along it at its end
-    across = np.einsum("ki,ki->k", conormal, k.tangents[:, 1 - along])
-    conormal = np.where(((across > 0) == (end == 0))[:, None], -conormal, conormal)
     up = np.array([[0.0, 0.0, 1.0]]) if solid is None else solid.normal(k.position)
     # atan2 keeps its digits where the membrane is nearly tangent to the solid
     tilt = np.linalg.norm(np.cross(k.normal, up), axis=1)

@@ -14,7 +14,7 @@ from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line, vertical_forces
 from .footing import footing
-from .forces import pull_on_sphere
+from .forces import pull_on_sphere, sphere_lines
 from .newton import NewtonResult
 
 
@@ -38,15 +38,19 @@ def contact_record(
         body = assembly.density(result.multipliers)
         at = contact_line(surface, line.edge)
         forces = vertical_forces(at, body, line.gamma, line.contact_angle)
-        support = forces.push - forces.line
+        support, solids = forces.push - forces.line, 1
     else:
-        support = -float(pull_on_sphere(scene, assembly, surface, result.multipliers).total[2])
+        pulls = [
+            pull_on_sphere(scene, assembly, surface, result.multipliers, which).total[2]
+            for which in range(max(1, len(sphere_lines(scene))))
+        ]
+        support, solids = -float(sum(pulls)), len(pulls)
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
-    wet = assembly.copies * assembly.edges.wetting(surface.points)[1] * scale.length**2
+    wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
     rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
     return {
-        "wet_solids": 1,
+        "wet_solids": solids,
         "wet_area": wet,
         "wet_fraction": wet / (np.pi * rim**2),
         "max_penetration": checked.penetration * unit if checked else None,

@@ -51,18 +51,18 @@ class EdgeLines:
         """Energy of the wetted surface inside the lines and its area."""
         none = BodyDensity()
         energy = sum(t.energy(edge, points, t.strength, none) for t, edge in self.lines)
-        return energy, sum(t.energy(edge, points, 1.0, none) for t, edge in self.lines)
+        return energy, sum(self.wet_areas(points))
 
-    def gap_values(self, points: Array) -> list[Array]:
-        """Gap integrals by number, one array (gap_count,) for each gap."""
-        return [
-            np.bincount(
-                self._rows.held(edge).ravel() + 1,
-                gap.values(edge, points).ravel(),
-                self.gap_count + 1,
-            )[1:].astype(float, copy=False)
-            for gap, edge in self.gaps
-        ]
+    def wet_areas(self, points: Array) -> list[float]:
+        """Area inside each line."""
+        return [t.energy(edge, points, 1.0, BodyDensity()) for t, edge in self.lines]
+
+    def gap_values(self, points: Array) -> Array:
+        """(gap_count,) gap integrals by number."""
+        total = np.zeros(self.gap_count + 1)
+        for gap, edge in self.gaps:
+            np.add.at(total, self._rows.held(edge) + 1, gap.values(edge, points))
+        return total[1:]
 
     def add_forces(
         self, total: FirstOrder, points: Array, body: BodyDensity, held: list[BodyDensity]
@@ -108,10 +108,12 @@ class EdgeLines:
             np.einsum("eai,eaibj,ebj->eab", d, blocks, d, optimize=True),
         )
 
-    def push(self, points: Array, loads: Array) -> Array:
-        """(3,) force of the line loads (count,) on their solids (one sector)."""
+    def push(self, name: str, points: Array, loads: Array) -> Array:
+        """(3,) force of the line loads (count,) on the solid that holds an edge (one sector)."""
         total = np.zeros(3)
         for gap, edge in self.gaps:
+            if gap.edge != name:
+                continue
             push = gap.gradients(edge, points).sum(axis=2)
             total -= np.einsum("ek,eki->i", loads[edge.functions], push)
         return total

@@ -26,6 +26,7 @@ from ..terms.variations import element_points, forces
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line, trimmed_line
 from .footing import footing
+from .wetted_cap import WettedCap
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,17 +75,25 @@ class Pull:
     pressure: Array
 
 
-def line_on_sphere(scene: Scene, assembly: Assembly, surface: Surface) -> ContactLine:
-    """The whole contact line on the sphere of a scene."""
+def line_on_sphere(
+    scene: Scene, assembly: Assembly, surface: Surface, which: int = 0
+) -> ContactLine:
+    """A whole contact line on a sphere of a scene, by its number."""
     if assembly.trim is not None:
         return trimmed_line(assembly.trim, surface, mirrors(scene.sector))
-    assert isinstance(scene.substrate, Sphere)
-    solid = scene.units.local_sphere(scene.substrate)
-    return contact_line(surface, scene.line_inside or "xi2=0", solid=solid)
+    term = sphere_lines(scene)[which]
+    return contact_line(surface, term.edge, solid=term.sphere)
 
 
-def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array) -> Pull:
-    """Force on the sphere that carries the membrane's line."""
+def sphere_lines(scene: Scene) -> list[SphereContactLine]:
+    """The membrane's lines on spheres at its edges, in the scene's scale."""
+    return [t for t in scene.local_terms() if isinstance(t, SphereContactLine)]
+
+
+def pull_on_sphere(
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array, which: int = 0
+) -> Pull:
+    """Force on the sphere that carries one of the membrane's lines, by its number."""
     if assembly.trim is not None:
         own = assembly.density(multipliers)
         trim, slope = assembly.trim, np.array(own.gradient)
@@ -97,51 +106,26 @@ def pull_on_sphere(scene: Scene, assembly: Assembly, surface: Surface, multiplie
             pressed[k] = trim.cap(surface.points, push)
         total = footing(scene, assembly, surface, own).total
         return Pull(total, assembly.whole(pressed))
-    (term, edge), body = assembly.edges.lines[0], assembly.density(multipliers)
-    points = surface.points
-    if isinstance(term, SphereContactLine) and term.covered:
+    term, edge = [
+        (term, edge) for term, edge in assembly.edges.lines if isinstance(term, SphereContactLine)
+    ][which]
+    points, body = surface.points, assembly.density(multipliers)
+    if term.covered:
         return _pull_through(assembly, surface, term.edge)
-    moment = term.energy(edge, points, 0.0, BodyDensity(1.0))
-    x, dx = edge.values @ points[edge.functions], edge.d @ points[edge.functions]
-    slope = np.array(body.gradient)
-    area = 0.5 * np.einsum("eqi,eq->i", np.cross(x, dx), edge.weights)
-    moments = _moments(x, dx, edge.weights, -moment)
-    pressure = body.constant * area + slope @ moments
     total = term.forces(edge, points, term.strength, body).sum(axis=(0, 1))
-    # the body integrals under the cap change with it: their flux is upwards, of the height
-    total += np.array([*(slope[:2] * moments[2, 2]), pressure[2]])
-    total += assembly.edges.push(points, assembly.line_load(multipliers))
-    fading = 1.0 - surface.space.abscissae[..., 1]
+    total += assembly.edges.push(term.edge, points, assembly.line_load(multipliers))
+    _, at = surface.space.edge_place(term.edge)
+    fading = 1.0 - np.abs(surface.space.abscissae[..., 1] - at)
     along = points_of(surface.space, fading[..., None])
     for i in range(3):
         total[i] -= _work(assembly, surface, multipliers, along * np.eye(3)[i])
-    whole = assembly.whole
-    return Pull(whole(total), whole(pressure))
-
-
-def _moments(x: Array, dx: Array, weights: Array, lifted: float) -> Array:
-    """(3, 3) ``int x_i n_j dA`` over a cap, by integrals along its line.
-
-    Parameters
-    ----------
-    x, dx : (elements, points, 3) the line and its derivative; lifted : ``int z n_z dA``.
-
-    Notes
-    -----
-    Stokes' theorem ``int n x grad f dA = oint f dx`` for all quadratic f; only the trace is left.
-    """
-
-    def around(i: int, j: int, k: int) -> float:
-        """``oint x_i x_j dx_k``"""
-        return float((x[..., i] * x[..., j] * dx[..., k] * weights).sum())
-
-    return np.array(
-        [
-            [lifted - around(0, 2, 1), -0.5 * around(0, 0, 2), 0.5 * around(0, 0, 1)],
-            [0.5 * around(1, 1, 2), lifted + around(1, 2, 0), -0.5 * around(1, 1, 0)],
-            [-0.5 * around(2, 2, 1), 0.5 * around(2, 2, 0), lifted],
-        ]
-    )
+    line = contact_line(surface, term.edge, assembly.points[0], term.sphere)
+    cap = WettedCap(line, term.sphere, term.toward)
+    pressure = cap.push(body)
+    # the body integrals under the cap change with it: their flux is upwards, of the height
+    lifted = cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
+    ex, ey, _ = body.gradient
+    return Pull(assembly.whole(total) + [ex * lifted, ey * lifted, pressure[2]], pressure)
 
 
 def _work(assembly: Assembly, surface: Surface, multipliers: Array, displacement: Array) -> float:
@@ -176,20 +160,6 @@ def _pull_through(assembly: Assembly, surface: Surface, edge: str) -> Pull:
     return Pull(assembly.whole(total), np.zeros(3))
 
 
-def volume_over_cone(line: ContactLine, solid: Sphere) -> float:
-    """Volume between the wetted cap and the cone from its line to the line's centroid.
-
-    ``1/3 int (x - apex) . n dA`` over the cap; the cone itself adds nothing.
-    """
-    apex = line.arc @ line.position / line.arc.sum()
-    away = line.position - np.array(solid.center)
-    vector = 0.5 * line.arc @ np.cross(line.position, line.tangent)
-    turn = (away[:, 0] * line.tangent[:, 1] - away[:, 1] * line.tangent[:, 0]) * line.arc
-    polar = np.arctan2(np.hypot(away[:, 0], away[:, 1]), away[:, 2])
-    area = solid.radius**2 * ((1.0 - np.cos(polar)) / (away[:, 0] ** 2 + away[:, 1] ** 2)) @ turn
-    return float(solid.radius * area + (np.array(solid.center) - apex) @ vector) / 3.0
-
-
 def particle_forces(
     scene: Scene,
     assembly: Assembly,
@@ -197,56 +167,58 @@ def particle_forces(
     multipliers: Array,
     measures: Mapping[str, float],
 ) -> tuple[ParticleForces, ...]:
-    """Forces on the particle on which the membrane ends, of a sheet or a free droplet; none where
-    the scene has no particle.
+    """Forces on the particles on which the membrane ends, of a sheet or a droplet; none where the
+    scene has no particle."""
+    particles = scene.particles
+    if scene.kind == "liquid_sheet" and isinstance(scene.substrate, Sphere):
+        particles = (scene.substrate,)
+    return tuple(
+        _on_particle(scene, assembly, surface, multipliers, measures, particle, which)
+        for which, particle in enumerate(particles)
+    )
+
+
+def _on_particle(
+    scene: Scene,
+    assembly: Assembly,
+    surface: Surface,
+    multipliers: Array,
+    measures: Mapping[str, float],
+    particle: Sphere,
+    which: int,
+) -> ParticleForces:
+    """Forces on a particle with the line of its number.
 
     Notes
     -----
     The scene's ``acceleration`` weighs the particle and the liquid on it, also where the sheet
     itself is computed without weight.
     """
-    particle, scale, sheet = scene.substrate, scene.units, scene.kind == "liquid_sheet"
-    if not (sheet or scene.particles) or not isinstance(particle, Sphere):
-        return ()
-    pull = pull_on_sphere(scene, assembly, surface, multipliers)
-    line, ball = line_on_sphere(scene, assembly, surface), scale.local_sphere(particle)
+    scale, sheet = scene.units, scene.kind == "liquid_sheet"
+    pull = pull_on_sphere(scene, assembly, surface, multipliers, which)
+    line, ball = line_on_sphere(scene, assembly, surface, which), scale.local_sphere(particle)
+    lines = sphere_lines(scene)
+    cap = WettedCap(line, ball, lines[which].toward) if lines else WettedCap(line, ball)
     g, rho = np.array(scene.acceleration), scene.liquid_density
-    pressed = pull.pressure
+    pressed, body = pull.pressure, assembly.density(multipliers)
     if sheet and g[2] and not assembly.body.gradient[2]:
         # a sheet without weight still carries weighty liquid: p0 - rho g z on the cap
         unit = scale.length**3 / scale.force
-        pressed = pressed - _weight_on_cap(line, ball) * (rho * g[2] * unit)
+        pressed = pressed - cap.push(BodyDensity(0.0, (0.0, 0.0, rho * g[2] * unit)))
     pressed = scale.axes @ pressed * scale.force
-    buoyancy = -rho * volume_over_cone(line, ball) * scale.length**3 * g
+    buoyancy = -rho * cap.volume_over_cone * scale.length**3 * g
     weight = 4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g
     contact = scale.axes @ (pull.total - pull.pressure) * scale.force
-    polar = np.radians(measures["phi_deg" if sheet else "alpha_deg"])
-    axis = scale.axes[:, 2]
+    axis = scale.axes @ np.array(cap.axis)
+    level = -(body.constant + float(cap.apex @ np.array(body.gradient))) * scale.pressure
     paper = paper_forces(
         particle,
-        measures["pressure" if sheet else "p_contact"],
-        particle.radius * (1.0 - float(np.cos(polar))),
+        measures["pressure"] if sheet else level,
+        particle.radius * (1.0 - float(np.cos(cap.polar))),
         *(float(part @ axis) for part in (weight, contact, buoyancy)),
     )
     none, center = np.zeros(3), np.array(particle.center)
-    return (ParticleForces(center, weight, contact, pressed - buoyancy, buoyancy, none, paper),)
-
-
-def _weight_on_cap(line: ContactLine, solid: Sphere) -> Array:
-    """(3,) ``int z n dA`` over the wetted cap, by integrals along its line."""
-    x, arc = line.position, line.arc
-    square = 0.5 * x[:, 2] ** 2 * arc
-    apex = arc @ x / arc.sum()
-    # vertical part: the volume over the cone, and the cone's own int z n_z dA by triangles
-    chord = np.cross(x - apex, line.tangent) * 0.5
-    cone = ((apex[2] + 2.0 * x[:, 2]) / 3.0 * chord[:, 2]) @ arc
-    return np.array(
-        [
-            -square @ line.tangent[:, 1],
-            square @ line.tangent[:, 0],
-            volume_over_cone(line, solid) + cone,
-        ]
-    )
+    return ParticleForces(center, weight, contact, pressed - buoyancy, buoyancy, none, paper)
 
 
 def paper_forces(

@@ -146,10 +146,14 @@ class Functional:
     def anew(self, surface: Surface) -> Surface:
         """The start, as far away as the top of a surface has been shifted."""
         start = self.spines.anew(surface)
-        if self.contact is not None:
-            self.contact.follow(start)
-            self.contact_rows = self._contact_rows()
+        self.follow(start)
         return start
+
+    def follow(self, surface: Surface) -> None:
+        """Find what is in contact in a mesh that has moved sideways."""
+        if self.contact is not None:
+            self.contact.follow(surface)
+            self.contact_rows = self._contact_rows()
 
     def begin_step(self, surface: Surface, term: Stabilization) -> None:
         """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
@@ -255,7 +259,7 @@ class Functional:
         gauge = np.zeros(len(self.spines.shifts))
         missing = np.array(held) - self._targets
         gaps = self.edges.gap_values(points)
-        return interface + body, np.concatenate([missing, *gaps, gauge])
+        return interface + body, np.concatenate([missing, gaps, gauge])
 
     def _integrals(
         self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]

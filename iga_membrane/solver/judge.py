@@ -111,6 +111,11 @@ def defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
             f"substrate, {depth:.0e} is allowed: take more discretization.elements or raise "
             "solver.penetration_tolerance"
         )
+    if not checked.indentation <= limit.indentation:
+        return Status.PENETRATION, (
+            f"the membrane lies up to {checked.indentation:.1e} radii inside a particle, "
+            f"{limit.indentation:.0e} is allowed: take more discretization.elements"
+        )
     for what, value, most in (
         ("residual on doubled quadrature", checked.residual, limit.residual),
         ("volume error", checked.volume, limit.volume),

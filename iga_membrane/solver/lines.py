@@ -10,10 +10,9 @@ from ..arrays import Index
 from ..scenes.scene import Scene
 from ..surface.sector import mirrors
 from ..surface.surface import Surface
-from ..terms import LineTerm, TrimmedContactLine
+from ..terms import PlaneContactLine, SphereContactLine, TrimmedContactLine
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line, trimmed_line
-from .measures import sphere_of
 from .solution import Solution
 
 
@@ -55,11 +54,12 @@ def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     found = []
     if any(isinstance(term, TrimmedContactLine) for term in scene.terms):
         found += _inside(scene, surface)
-    edges = [t.edge for t in scene.terms if isinstance(t, LineTerm)]
-    if edges:
-        solid = sphere_of(scene)
-        line = contact_line(surface, scene.line_inside or edges[0], solid=solid)
-        found.append(LineOnSolid(-1 if solid is None else 0, line))
+    for term in scene.local_terms():
+        if isinstance(term, SphereContactLine):
+            line = contact_line(surface, term.edge, solid=term.sphere)
+            found.append(LineOnSolid(sum(each.solid >= 0 for each in found), line))
+        elif isinstance(term, PlaneContactLine):
+            found.append(LineOnSolid(-1, contact_line(surface, term.edge)))
     return tuple(LineOnSolid(each.solid, _world(scene, each.line)) for each in found)
 
 

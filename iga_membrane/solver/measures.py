@@ -25,7 +25,8 @@ from .apparent import apparent_angle, cassie_baxter_angle
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
 from .footing import Footing, footing
-from .forces import line_on_sphere, pull_on_sphere, volume_over_cone
+from .forces import line_on_sphere, pull_on_sphere
+from .wetted_cap import WettedCap
 
 
 def measures(
@@ -56,7 +57,7 @@ def measures(
     elif scene.kind == "sessile_droplet" and (on_area or not assembly.edges.lines):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
-        wet = assembly.copies * assembly.edges.wetting(surface.points)[1] * scale.length**2
+        wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
         values |= _droplet(scene, surface, wet, body, scale)
     elif scene.kind == "film_between_rings":
         values |= _film(surface, body, scale)
@@ -242,7 +243,7 @@ def _droplet(
     scene: Scene, surface: Surface, wet: float, body: BodyDensity, scale: Scale
 ) -> dict[str, float]:
     """Heights, radii and angle of a drop on a plane or on a sphere."""
-    pole = scene.sector.model in ("quarter", "eighth")
+    pole = surface.space.pole is not None and scene.sector.model in ("quarter", "eighth")
     apex = surface.net[0, -1] if pole else _farthest(surface, lambda x: x[..., 2])
     solid = sphere_of(scene)
     line = contact_line(surface, scene.line_inside or "xi2=0", solid=solid)
@@ -293,7 +294,7 @@ def _sheet(
         "contact_radius": float(radius @ line.arc) / length * scale.length,
         "cap_height": height * scale.length,
         "z_contact": float(line.position[:, 2] @ line.arc) / length * scale.length,
-        "V_cap": volume_over_cone(line, solid) * scale.length**3,
+        "V_cap": WettedCap(line, solid).volume_over_cone * scale.length**3,
         "F_total": float(forces.total[2]) * scale.force,
         "F_P": float(forces.pressure[2]) * scale.force,
         "F_CL": float(forces.total[2] - forces.pressure[2]) * scale.force,
@@ -317,8 +318,10 @@ def _under_hole(scene: Scene, assembly: Assembly, surface: Surface) -> float:
 
 
 def sphere_of(scene: Scene) -> Sphere | None:
-    """The sphere on which the membrane's line lies, in the scene's scale."""
+    """The sphere on which the membrane's first line lies, in the scene's scale; None on a plane."""
     for term in scene.local_terms():
+        if isinstance(term, PlaneContactLine):
+            return None
         if isinstance(term, SphereContactLine):
             return term.sphere
         if isinstance(term, TrimmedContactLine) and isinstance(term.solid, Sphere):

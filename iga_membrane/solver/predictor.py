@@ -66,8 +66,11 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
         near_start = before.surface
         if scene.start_from is not None:
             near_start = scene.start_from(before.surface)
-        start = near_start if assembly.trim is None else pressed(scene, assembly, near_start)
-        assembly.keep_motion(near_start)
+        start = near_start
+        assembly.follow(near_start)
+        if assembly.trim is not None:
+            start = pressed(scene, assembly, near_start)
+            assembly.keep_motion(near_start)
         if len(before.multipliers) == assembly.multipliers:
             multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)

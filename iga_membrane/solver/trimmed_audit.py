@@ -53,9 +53,7 @@ def trimmed_audit(
     density = tension * (solid - line.cosine[..., None] * membrane) * (arc / sine)[..., None]
     pull = line.table.rows[0].transpose(0, 2, 1) @ density
     scatter(total, absolute, motion, line.table.functions, pull)
-    for edge, pull in edge_forces(
-        scene, surface, None, body, np.zeros(len(surface.points)), points
-    ):
+    for edge, pull in edge_forces(scene, surface, np.zeros(len(surface.points)), points):
         scatter(total, absolute, motion, edge.functions, pull)
     pull = tension * trim.ties.forces(surface.points)
     scatter(total, absolute, motion, trim.ties.across[0], pull)

@@ -37,6 +37,8 @@ def scenes():
             yield pytest.param(with_terms(scene, everything), id=f"{space} {degree} {model}")
     for model in ("full", "eighth"):
         yield pytest.param(on_sphere(model), id=f"sphere {model}")
+    for model in ("full", "half"):
+        yield pytest.param(between(model), id=f"particle {model}")
     yield pytest.param(pinned_cap(1.0, [TENSION, iga.Volume(1.0)], "half"), id="fixed rim")
     flat = iga.sheet(1.0, elements=4)
     bent = flat.moved(
@@ -56,6 +58,22 @@ def on_sphere(model):
     terms.append(iga.SphereContactLine(1.3, sphere))
     supports = [iga.Sliding("xi2=0", sphere), iga.Sector(model)]
     return iga.Scene(scene.surface, terms, supports, scale=iga.Scale())
+
+
+def between(model):
+    """A droplet between a plane and a particle beside it, the lines off them by a little."""
+    particle = iga.Sphere(70.0, 0.4, (1.1, 0.0, 0.8))
+    built = iga.sessile_droplet(
+        iga.Plane(110.0),
+        volume=4.0,
+        particles=[particle],
+        contact_line="conforming",
+        discretization=iga.Discretization(degree=3, elements=4, model=model),
+    )
+    aside = 0.3 if model == "full" else 0.0
+    weight = iga.Gravity(0.7, (0.4, aside, -1.1))
+    terms = [*built.terms, weight]
+    return iga.Scene(built.surface, terms, built.supports, scale=built.scale)
 
 
 def tube():

@@ -1,0 +1,106 @@
+"""A droplet whose membrane ends on its particle, against the one that passes through it."""
+
+import numpy as np
+import pytest
+from helpers import UNIT_VOLUME
+from particle_scenes import BOND, particle, place, pull, scene, size, solved
+
+import iga_membrane as iga
+
+ENDS = {"line": "conforming"}
+PLACES = [(95.0, 90.0, 0.2), (20.0, 60.0, 0.1), (65.0, 110.0, 0.4), (115.0, 75.0, 0.15)]
+MORE = [
+    pytest.param((polar, angle, radius), {"elements": 40}, marks=pytest.mark.slow)
+    for polar in (30.0, 75.0, 110.0)
+    for angle in (60.0, 85.0, 120.0)
+    for radius in (0.1, 0.25)
+]
+
+CASES = [
+    (95.0, 90.0, 0.2),
+    pytest.param((50.0, 70.0, 0.12), marks=pytest.mark.slow),
+    pytest.param((85.0, 115.0, 0.3), marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize(("case", "mesh"), [(each, {}) for each in PLACES] + MORE)
+def test_agrees_with_the_membrane_that_passes_through(case, mesh):
+    """On default meshes; on finer ones also where the force nearly vanishes."""
+    ends, passes = solved(*case, **ENDS, **mesh), solved(*case, **mesh)
+    assert np.abs(pull(ends) - pull(passes)).max() < 5e-4 * size(pull(passes))
+    for name in ("p_base", "energy", "height", "contact_radius", "A_LG", "A_wet"):
+        assert ends.measures[name] == pytest.approx(passes.measures[name], rel=5e-5), name
+    for part in ("contact_line", "hydrostatic", "buoyancy"):
+        one, other = (getattr(s.forces[0], part) for s in (ends, passes))
+        assert np.abs(one - other).max() < 5e-4 * size(other), part
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_forces_converge_and_balance(case):
+    meshes = [solved(*case, **ENDS, elements=n) for n in (14, 21, 31)]
+    coarse, middle, fine = (pull(s)[[0, 2]] for s in meshes)
+    first, last = np.abs(middle - coarse), np.abs(fine - middle)
+    assert last.max() < 1e-4 * size(fine)
+    assert size(last) < size(first) / 1.5**4
+    sideways = [abs(s.hold_force[0] - pull(s)[0]) / size(pull(s)) for s in meshes]
+    weight = BOND * UNIT_VOLUME
+    upwards = [abs(s.contact["support_force"] - pull(s)[2] - weight) / weight for s in meshes]
+    assert sideways[2] < 1e-4
+    assert upwards[2] < 1e-5
+    assert sideways[2] < sideways[0] / 2.25**4
+    assert upwards[2] < upwards[0] / 2.25**4
+
+
+def test_half_model_agrees_with_full():
+    half = solved(**ENDS)
+    full = iga.solve(scene(particle(), hold="xy", model="full", **ENDS))
+    assert (half.scene.sector.model, full.scene.sector.model) == ("half", "full")
+    assert full.success, full.message
+    assert size(pull(full) - pull(half)) < 1e-6 * size(pull(half))
+    assert full.measures["energy"] == pytest.approx(half.measures["energy"], rel=1e-8)
+
+
+def test_force_is_slope_of_energy():
+    _, normal = place(95.0)
+    step, force = 2e-3, pull(solved(elements=24, **ENDS))
+    for way in (normal, np.array([-normal[2], 0.0, normal[0]])):
+        energies = []
+        for sign in (1.0, -1.0):
+            moved = iga.solve(scene(particle(shift=sign * step * way), elements=24, **ENDS))
+            assert moved.success, moved.message
+            energies.append(moved.measures["energy"])
+        slope = (energies[0] - energies[1]) / (2.0 * step)
+        assert abs(force @ way) > 0.05 * size(force)
+        assert force @ way == pytest.approx(-slope, abs=1e-4 * size(force))
+
+
+def test_lines_lie_on_particle_and_plane():
+    found = solved(**ENDS)
+    on_particle, on_plane = sorted(iga.contact_lines(found), key=lambda each: -each.solid)
+    away = on_particle.line.position - np.array(found.scene.particles[0].center)
+    assert np.linalg.norm(away, axis=1) == pytest.approx(0.2, abs=2e-6)
+    assert np.abs(on_plane.line.position[:, 2]).max() < 1e-12
+    for each, angle in ((on_particle, 90.0), (on_plane, 150.0)):
+        mean = np.degrees(each.line.angle @ each.line.arc / each.line.arc.sum())
+        assert mean == pytest.approx(angle, abs=0.1)
+
+
+@pytest.mark.slow
+def test_moving_particle_finds_the_place_of_the_other_discretization():
+    """Along the vertical, where the force on it vanishes."""
+    center = particle(polar=40.0).center
+    free = iga.Sphere(100.0, 0.2, center, 0.0, "vertical")
+    places = []
+    for line in ("conforming", "auto"):
+        found = iga.solve(scene(free, line=line, elements=24))
+        assert found.success, found.message
+        places.append(found.forces[0].center)
+    assert size(places[1] - places[0]) < 1e-5
+    assert size(places[0] - center) > 0.01
+
+
+def test_several_particles_are_refused():
+    one = particle(35.0)
+    x, _, z = one.center
+    with pytest.raises(iga.SceneError, match=r'contact_line = "conforming".*2 particle'):
+        scene(one, iga.Sphere(90.0, 0.2, (-x, 0.0, z)), **ENDS)
