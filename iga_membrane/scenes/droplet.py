@@ -198,9 +198,14 @@ def sessile_droplet(
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if grains:
-        alone = again(particles=(), hold="none", discretization=Discretization())
-        scene = _with_particles(replace(scene, start_from=built.start_from), alone)
         line = built.terms[-1]
+        if built.alone is None:
+            alone = again(particles=(), hold="none", discretization=Discretization())
+        else:
+            # it must not roll away from its particles
+            bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
+            alone = _with_start(replace(scene, particles=()), bare, built.alone)
+        scene = _with_particles(replace(scene, start_from=built.start_from), alone)
         assert isinstance(line, TrimmedContactLine)
         assert line.toward is not None
         toward, gamma = line.toward, liquid.surface_tension

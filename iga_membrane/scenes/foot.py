@@ -24,7 +24,8 @@ from ..terms import (
     Term,
     TrimmedContactLine,
 )
-from .asperities import ball, smallest_model, whole_skin
+from .asperities import ball, fine_at, smallest_model, whole_skin
+from .beside import mirrored_model
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, space_name
 from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
@@ -59,6 +60,7 @@ class Foot:
     ----------
     predictor : other terms that give a better start.
     start_from : a start from the equilibrium of the same droplet without particles.
+    alone : what that droplet stands on, on the same patch.
     """
 
     surface: Surface
@@ -71,6 +73,7 @@ class Foot:
     tangent: bool = False
     predictor: Sequence[Term] = ()
     start_from: Callable[[Surface], Surface] | None = None
+    alone: Foot | None = None
 
 
 CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
@@ -146,11 +149,14 @@ def _on_an_area(parts: Question) -> Foot:
     local = scale.local_solid(substrate)
     lateral = (x if abs(x) > tiny else 0.0, y if abs(y) > tiny else 0.0)
     smallest = smallest_model(local, 1.5, lateral)
+    particles = [scale.local_sphere(each) for each in parts.particles]
+    if particles:
+        smallest = mirrored_model(particles, smallest, pairs=True)
     model = parts.asked.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):
         raise SceneError(
-            f'discretization.model = "{model}": gravity or the substrate has no such mirror '
-            f'planes; "{smallest}" is the smallest model here'
+            f'discretization.model = "{model}": gravity, the substrate or particles have no such '
+            f'mirror planes; "{smallest}" is the smallest model here'
         )
     unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
     length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
@@ -160,7 +166,15 @@ def _on_an_area(parts: Question) -> Foot:
     unit_law = scale.length**2 / scale.tension
     stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
     pattern = Pattern(length, cell_of(local), lies, least == 180.0, stiffness)
-    skin = whole_skin(parts.down, unit, pattern, mesh.degree, elements, parts.start)
+    skin = whole_skin(
+        parts.down,
+        unit,
+        pattern,
+        mesh.degree,
+        elements,
+        parts.start,
+        [fine_at(p) for p in particles],
+    )
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
