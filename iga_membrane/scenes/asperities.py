@@ -221,11 +221,11 @@ def _finest(
     return chosen, max(FEWEST, int(np.ceil(count)))
 
 
-PARTS_BELOW = np.linspace(0.45, 0.75, 13)
+PARTS_BELOW = np.linspace(0.45, 0.75, 9)
 """Parts of the elements under the foot to choose from where others must be fine, too."""
 STEEPEST = 0.2
 """Least size of an element at the top over that in the foot, on the square."""
-SAMPLE = 40
+SAMPLE = 24
 """Elements from the middle to a side with which these are compared."""
 MOST_AT_SPOTS = 160
 """Elements from the middle to a side at most, by default, for spots beside the foot."""
