@@ -16,6 +16,7 @@ from ..solids import Solid, Sphere
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from ..surface.surface import Surface
+from .beside import mirrored_model
 from .liquid import Model
 from .pattern import (
     FINE,
@@ -249,8 +250,10 @@ def ball(radius: float) -> Meridian:
     return Meridian(radius * np.sin(u), radius * (1.0 + np.cos(u)), normal)
 
 
-def smallest_model(solid: Solid, reach: float, lateral: tuple[float, float]) -> Model:
-    """The smallest model whose mirror planes both the solid and gravity have.
+def smallest_model(
+    solid: Solid, reach: float, lateral: tuple[float, float], particles: Sequence[Sphere] = ()
+) -> Model:
+    """The smallest model whose mirror planes the solid, gravity and particles have.
 
     Parameters
     ----------
@@ -264,8 +267,9 @@ def smallest_model(solid: Solid, reach: float, lateral: tuple[float, float]) -> 
         off = np.abs(solid.nearest(image).gap - gap).max(initial=0.0)
         return bool(off <= 1e-9 * reach)
 
-    if lateral[1] or not mirrored(sample * [1.0, -1.0, 1.0]):
-        return "full"
+    model: Model = "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"
     if lateral[0] or not mirrored(sample * [-1.0, 1.0, 1.0]):
-        return "half"
-    return "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"
+        model = "half"
+    if lateral[1] or not mirrored(sample * [1.0, -1.0, 1.0]):
+        model = "full"
+    return mirrored_model(particles, model, pairs=True) if particles else model

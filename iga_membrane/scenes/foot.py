@@ -25,7 +25,6 @@ from ..terms import (
     TrimmedContactLine,
 )
 from .asperities import ball, fine_at, smallest_model, whole_skin
-from .beside import mirrored_model
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, space_name
 from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
@@ -148,10 +147,8 @@ def _on_an_area(parts: Question) -> Foot:
     tiny = 1e-14 * float(np.abs(parts.bond).max())
     local = scale.local_solid(substrate)
     lateral = (x if abs(x) > tiny else 0.0, y if abs(y) > tiny else 0.0)
-    smallest = smallest_model(local, 1.5, lateral)
     particles = [scale.local_sphere(each) for each in parts.particles]
-    if particles:
-        smallest = mirrored_model(particles, smallest, pairs=True)
+    smallest = smallest_model(local, 1.5, lateral, particles)
     model = parts.asked.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):
         raise SceneError(

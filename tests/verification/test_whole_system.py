@@ -59,7 +59,7 @@ def assert_balanced(solution, within=1e-3):
 
 
 def test_asperities_and_particles_carry_the_weight():
-    solution = solved(on_top(), *PAIR, elements=52)
+    solution = solved(on_top(), *PAIR)
     assert solution.scene.sector.model == "quarter"
     assert_balanced(solution)
     fx, fy, fz = pull(solution, 1)
