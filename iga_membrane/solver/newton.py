@@ -41,8 +41,10 @@ begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
 step, and before; less while it rolls to and fro."""
-BELOW = 1e-3
-"""Depth below a plane on the way, over the scene's length; at its end the audit allows none."""
+BELOW, BELOW_BESIDE = 1e-9, 1e-3
+"""Depth below a plane on the way, over the scene's length, and the same with contact lines inside
+the membrane, which push it there; at its end the audit allows none. Near 180 degrees there is an
+equilibrium that dips below the plane by 2e-4."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -309,6 +311,9 @@ def _search(
 
     begin = merit(start.total, start.constraints)
     noise = 1e-13 * (abs(start.total) + abs(begin))
+    lowest = -np.inf
+    if assembly.above_plane:
+        lowest = -BELOW if assembly.trim is None else -BELOW_BESIDE
     part = longest
     for _ in range(25):
         trial = surface.moved(surface.points + part * displacement)
@@ -316,7 +321,7 @@ def _search(
         value = merit(energies.total, energies.constraints)
         if (
             energies.regular_after(start)
-            and not (assembly.above_plane and energies.lowest < -BELOW)
+            and energies.lowest >= lowest
             and (uphill or value <= begin + 1e-4 * part * slope + noise)
         ):
             return part, trial

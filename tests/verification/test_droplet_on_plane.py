@@ -33,7 +33,7 @@ def test_published_drops_through_the_command_line(case, tmp_path):
     assert result["load_steps"] == 1
 
 
-@pytest.mark.parametrize("angle", [3, 10, 45, 90, 135, 160, 175, 179])
+@pytest.mark.parametrize("angle", [3, 10, 45, 90, 135, 160, 175, 177, 179])
 @pytest.mark.parametrize("bond", [0, 0.05, 0.7, 5, 30, 100])
 def test_other_drops_of_the_family(angle, bond):
     solution = solved(angle, bond)
