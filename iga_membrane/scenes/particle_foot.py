@@ -12,7 +12,7 @@ from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
-from ..terms import Scale, TrimmedContactLine
+from ..terms import TrimmedContactLine
 from .beside import as_list, mirrored_model, towards_liquid
 from .foot import PREDICTABLE, SHARP, Foot, Question, foot_of, rest_of, sector_of
 from .liquid import MODELS
@@ -26,7 +26,7 @@ def with_particles(parts: Question) -> Foot:
             f'solver.contact_line = "{parts.contact_line}": not available yet with particles, '
             'whose lines are "trimmed"; leave it out'
         )
-    if parts.law.penalty is not None or parts.start is not None or parts.asked.space == "nurbs":
+    if parts.law.penalty is not None or parts.start is not None or parts.asked.space != "bspline":
         raise SceneError(
             "particle: a droplet with particles needs the scene's own start, no penalty and space "
             '"bspline"'
@@ -55,22 +55,23 @@ def _beside_asperities(parts: Question) -> Foot:
                 f"particle[{i}].center = {list(given.center)}: not available yet so low beside "
                 f"asperities; put it above z = {WIDEST * float(foot.surface.points[:, 2].max()):g}"
             )
-    toward = towards_liquid(start, local, 1.0)
+    reach = AROUND * float(np.linalg.norm(foot.surface.points[:, :2], axis=1).max())
+    solid = _one_list(parts.substrate, parts.particles, reach)
     line = TrimmedContactLine(
-        parts.liquid.surface_tension, _one_list(parts.substrate, parts.particles, scale), toward
+        parts.liquid.surface_tension, solid, towards_liquid(start, local, 1.0)
     )
     # contact lines take no part in shifts, and particles stand in their way
     alone = replace(foot, supports=())
     return replace(alone, terms=[line], predictor=(), alone=alone)
 
 
-def _one_list(substrate: Solid, particles: Sequence[Sphere], scale: Scale) -> Spheres:
-    """Asperities and, behind them, particles; of a lattice those that the droplet may meet."""
+def _one_list(substrate: Solid, particles: Sequence[Sphere], reach: float) -> Spheres:
+    """Asperities and, behind them, particles; of a lattice those within ``reach`` of the axis."""
     assert isinstance(substrate, (SphereLattice, Spheres))
     if isinstance(substrate, Spheres):
         which: Index = np.arange(len(substrate.centers))
     else:
-        which = substrate.within(REACH * scale.length)
+        which = substrate.within(reach)
     angles = np.broadcast_to(substrate.contact_angle, which.shape)
     grains = as_list(particles)
     return Spheres(
@@ -82,9 +83,11 @@ def _one_list(substrate: Solid, particles: Sequence[Sphere], scale: Scale) -> Sp
 
 WIDEST = 0.45
 """Height of a droplet on asperities, over that of its top, below which its directions turn."""
+AROUND = 2.0
+"""Distance from a droplet's axis, over its largest radius, of the spheres of a lattice that it may
+meet."""
 REACH = 1.5
-"""Over the droplet's length: distance from its axis of a lattice's spheres that it may meet; on a
-plane that over which the line's conormals turn into the membrane's normals."""
+"""Distance over which the line's conormals turn into the membrane's normals."""
 
 
 def _on_a_plane(parts: Question) -> Foot:
