@@ -1,6 +1,6 @@
 """Particles on droplets and sheets: convergence, where they are solved, pull-off, free droplets.
 
-    OMP_NUM_THREADS=1 python benchmarks/particles.py [converge|agree|free|pull|resting|grid ...]
+    OMP_NUM_THREADS=1 python benchmarks/particles.py [converge|agree|free|pull|resting|grid|...]
 
 Prints the tables of docs/results/particles.md.
 """
@@ -203,6 +203,74 @@ def grid() -> None:
     print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
 
 
+ASPERITIES = iga.SphereLattice(150.0, 0.1, 0.3, offset=(0.15, 0.15))
+
+
+def on_asperities(particles, **mesh) -> iga.Scene:
+    return iga.sessile_droplet(
+        ASPERITIES,
+        volume=VOLUME,
+        gravity=1.0,
+        hold="x" if len(particles) == 1 else "none",
+        particles=particles,
+        discretization=iga.Discretization(**mesh),
+    )
+
+
+def missing(found: iga.Solution) -> float:
+    """What forces and weight leave, over the weight."""
+    on_solids = [each["force_vector"] for each in found.contact["asperities"]]
+    on_solids += [each.effective for each in found.forces]
+    left = np.sum(on_solids, axis=0) + [0.0, 0.0, VOLUME] - found.hold_force
+    return float(np.abs(left).max()) / VOLUME
+
+
+def whole() -> None:
+    """The scene of examples/whole_system.py, refined."""
+    print("| elements | unknowns | F_z | F_z | F_z | forces left / weight | iterations | CPU s |")
+    print("|---" * 8 + "|")
+    particles = [
+        iga.Sphere(80.0, 0.25, (0.83, 0.0, 1.08)),
+        iga.Sphere(90.0, 0.3, (-0.62, 0.0, 1.26)),
+        iga.Sphere(100.0, 0.2, (0.1, 0.0, 1.42)),
+    ]
+    for elements in (50, None, 72, 90):
+        start = process_time()
+        found = iga.solve(on_asperities(particles, elements=elements))
+        forces = " | ".join(f"{each.effective[2]:.5f}" for each in found.forces)
+        count = found.surface.space.bases[0].elements // 2
+        print(
+            f"| {count} | {found.unknowns} | {forces} | {missing(found):.0e} | "
+            f"{found.newton_iterations} | {process_time() - start:.1f} |",
+            flush=True,
+        )
+
+
+def rough() -> None:
+    """One particle whose centre is on the surface of the droplet alone, held sideways."""
+    print(
+        "| polar | angle | radius | elements | status | F_x | F_z | forces left / weight | CPU s |"
+    )
+    print("|---" * 9 + "|")
+    alone = iga.solve(on_asperities([]))
+    ticks = np.linspace(-0.999, 0.999, 401)
+    x = alone.surface.at(np.stack(np.meshgrid(ticks, ticks), axis=-1), 1).position.reshape(-1, 3)
+    profile = np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2]], axis=1)
+    for polar in (20.0, 50.0, 80.0):
+        place = at_polar(profile, alone.measures["height"], polar)
+        for angle, radius in ((90.0, 0.15), (90.0, 0.25), (90.0, 0.4), (45.0, 0.25), (130.0, 0.25)):
+            start = process_time()
+            particle = iga.Sphere(angle, radius, (float(place[0]), 0.0, float(place[1])))
+            found = iga.solve(on_asperities([particle]), LIMIT, on_fail="return")
+            force, count = pull(found), found.surface.space.bases[0].elements // 2
+            print(
+                f"| {polar:g} | {angle:g} | {radius:g} | {count} | {found.status.name} | "
+                f"{force[0]:.5f} | {force[2]:.5f} | {missing(found):.0e} | "
+                f"{process_time() - start:.1f} |",
+                flush=True,
+            )
+
+
 STUDIES = {
     "converge": converge,
     "agree": agree,
@@ -210,6 +278,8 @@ STUDIES = {
     "pull": pulled,
     "resting": resting,
     "grid": grid,
+    "whole": whole,
+    "rough": rough,
 }
 
 if __name__ == "__main__":

@@ -5,15 +5,18 @@ The whole skin of the droplet is one closed membrane, evenly meshed under the dr
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Solid
+from ..solids import Solid, Sphere
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
+from ..surface.surface import Surface
+from .beside import mirrored_model
 from .liquid import Model
 from .pattern import (
     FINE,
@@ -39,6 +42,32 @@ MOST = 600
 SPREAD = 1.15
 """Growth of the finely meshed foot below 180 degrees; the same for all angles, so that paths in the
 angle keep their mesh."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """A part of the skin beside its foot, round a place near it.
+
+    Attributes
+    ----------
+    center : (3,) that place; radius : of the part beyond the distance to the skin.
+    element : largest element in it.
+    """
+
+    center: Array
+    radius: float
+    element: float
+
+
+NARROW_LINE, PER_LINE = 0.4, 4.0
+"""Radius of a particle's line over its own, at least, and elements along it."""
+
+
+def fine_at(particle: Sphere) -> Spot:
+    """Where a particle's line is, and what resolves it."""
+    sine = float(np.sin(np.radians(particle.contact_angle)))
+    line = particle.radius * max(sine, NARROW_LINE)
+    return Spot(np.array(particle.center), 0.5 * line, line / PER_LINE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +97,7 @@ def whole_skin(
     degree: int,
     elements: int,
     start: object = None,
+    spots: Sequence[Spot] = (),
 ) -> Skin:
     """Flat-footed droplet of least energy, its foot meshed evenly.
 
@@ -77,6 +107,7 @@ def whole_skin(
     elements : from the middle of the foot to the widest place; 0 for ``PER_RADIUS`` along the
         pattern's length.
     start : "above" or "touching" for a sphere; anything else for the flat-footed droplet.
+    spots : where the skin must be as fine as in its foot.
     """
     length = pattern.length
     drop = rounded(bond, volume)
@@ -86,12 +117,15 @@ def whole_skin(
     wide = _foot(drop, pattern, many)
     meridian = _meridian(drop, wide)
     reach = inverse_lemniscate_sine(meridian.size_at(wide))
-    if not elements:
-        elements = _elements(drop, pattern, wide, reach, many)
-    fine = fine_part(reach, elements) if many else FINE
+    if spots:
+        fine, needed = _finest(meridian, reach, PER_RADIUS * wide / length, spots)
+        elements = elements or needed
+    else:
+        elements = elements or _elements(drop, pattern, wide, reach, many)
+        fine = fine_part(reach, elements) if many else FINE
     narrow = many and pattern.unresolved(drop.pressure, wide / (fine * elements))
     ring = RING * pattern.spot(drop.pressure) if narrow else None
-    stretch = Stretch(fine, reach / fine) if reach < fine else Stretch()
+    stretch = Stretch(fine, reach / fine) if reach < fine or spots else Stretch()
     space = pillow_space(degree, elements)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
@@ -144,6 +178,59 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
     return max(least, int(np.ceil(needed)))
 
 
+def _finest(
+    meridian: Meridian, reach: float, under: float, spots: Sequence[Spot]
+) -> tuple[float, int]:
+    """The part of the elements under the foot with which fewest are needed from the middle to the
+    widest place, and their number.
+
+    Parameters
+    ----------
+    reach : of the foot, over that of the widest place, on the square without stretch.
+    under : elements that the foot needs.
+
+    Raises
+    ------
+    SceneError
+        If a spot is too small.
+    """
+    chosen, fewest = FINE, (np.inf, -1)
+    for fine in PARTS_BELOW:
+        slope = reach / fine
+        last = slope + 2.0 * (1.0 - slope) / (1.0 - fine)
+        if last < STEEPEST * slope:
+            continue
+        needed = [(under / fine, -1)]
+        space = pillow_space(2, SAMPLE)
+        surface = Surface(space, closed_surface(space, meridian, Stretch(fine, slope))[0])
+        ticks = np.linspace(-1.0, 1.0, 4 * SAMPLE + 2)[1:-1]
+        k = surface.at(np.stack(np.meshgrid(ticks, ticks, indexing="ij"), axis=-1), 1)
+        for i, spot in enumerate(spots):
+            away = np.linalg.norm(k.position - spot.center, axis=-1)
+            lengths = np.linalg.norm(k.tangents, axis=-1)[away < spot.radius + away.min()]
+            needed.append((float(lengths.max()) / spot.element, i))
+        if max(needed) < fewest:
+            chosen, fewest = float(fine), max(needed)
+    count, which = fewest
+    if which >= 0 and count > MOST_AT_SPOTS:
+        raise SceneError(
+            f"particle[{which}].radius: its contact line needs {count:.0f} elements from the "
+            f"middle of the foot to the widest place, more than {MOST_AT_SPOTS}: not available "
+            "yet on asperities; give a larger particle, or discretization.elements"
+        )
+    return chosen, max(FEWEST, int(np.ceil(count)))
+
+
+PARTS_BELOW = np.linspace(0.45, 0.75, 9)
+"""Parts of the elements under the foot to choose from where others must be fine, too."""
+STEEPEST = 0.2
+"""Least size of an element at the top over that in the foot, on the square."""
+SAMPLE = 24
+"""Elements from the middle to a side with which these are compared."""
+MOST_AT_SPOTS = 160
+"""Elements from the middle to a side at most, by default, for spots beside the foot."""
+
+
 def _meridian(drop: FlatDrop, wide: float) -> Meridian:
     """The start's meridian; its directions are vertical as far out as asperities may be wet, and
     turn into its normals at the widest place."""
@@ -162,8 +249,10 @@ def ball(radius: float) -> Meridian:
     return Meridian(radius * np.sin(u), radius * (1.0 + np.cos(u)), normal)
 
 
-def smallest_model(solid: Solid, reach: float, lateral: tuple[float, float]) -> Model:
-    """The smallest model whose mirror planes both the solid and gravity have.
+def smallest_model(
+    solid: Solid, reach: float, lateral: tuple[float, float], particles: Sequence[Sphere] = ()
+) -> Model:
+    """The smallest model whose mirror planes the solid, gravity and particles have.
 
     Parameters
     ----------
@@ -177,8 +266,9 @@ def smallest_model(solid: Solid, reach: float, lateral: tuple[float, float]) -> 
         off = np.abs(solid.nearest(image).gap - gap).max(initial=0.0)
         return bool(off <= 1e-9 * reach)
 
-    if lateral[1] or not mirrored(sample * [1.0, -1.0, 1.0]):
-        return "full"
+    model: Model = "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"
     if lateral[0] or not mirrored(sample * [-1.0, 1.0, 1.0]):
-        return "half"
-    return "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"
+        model = "half"
+    if lateral[1] or not mirrored(sample * [1.0, -1.0, 1.0]):
+        model = "full"
+    return mirrored_model(particles, model, pairs=True) if particles else model

@@ -93,19 +93,24 @@ def check_reach(i: int, particle: Sphere, gap: float, length: float) -> None:
         )
 
 
-def mirrored_model(particles: Sequence[Sphere], smallest: Model) -> Model:
-    """The smallest model in whose mirror planes all particles lie, none smaller than another's.
+def mirrored_model(particles: Sequence[Sphere], smallest: Model, *, pairs: bool = False) -> Model:
+    """The smallest model that particles have, none smaller than another's: with all of them in its
+    mirror planes, or, if ``pairs`` are as good, images of each other.
 
-    The patch has its pole in one of them, so that a pair of mirror images has no symmetric patch.
-    Mirror planes of the models: y = 0, then x = 0, then x = y.
+    A patch with its pole in a particle is not symmetric to a pair. Mirror planes of the models:
+    y = 0, then x = 0, then x = y.
 
     Parameters
     ----------
     particles : in the droplet's scale.
     """
     centers = np.array([each.center for each in particles])
-    images = (centers * [1, -1, 1], centers * [-1, 1, 1], centers[:, [1, 0, 2]])
+    kinds = np.array([(each.radius, each.contact_angle) for each in particles])
     kept = 0
-    while kept < 3 and float(np.abs(images[kept] - centers).max()) <= 1e-9:
+    for image in (centers * [1, -1, 1], centers * [-1, 1, 1], centers[:, [1, 0, 2]]):
+        away = np.abs(image[:, None] - centers).max(axis=-1)
+        away += np.where((kinds[:, None] == kinds).all(axis=-1), 0.0, np.inf)
+        if float((away.min(axis=1) if pairs else away.diagonal()).max()) > 1e-9:
+            break
         kept += 1
     return MODELS[min(kept, MODELS.index(smallest))]

@@ -216,11 +216,16 @@ def sessile_droplet(
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if grains:
-        alone = again(
-            particles=(), hold="none", discretization=Discretization(), contact_line="auto"
-        )
-        scene = _with_particles(replace(scene, start_from=built.start_from), alone)
         line, gamma = built.terms[-1], liquid.surface_tension
+        if built.alone is None:
+            alone = again(
+                particles=(), hold="none", discretization=Discretization(), contact_line="auto"
+            )
+        else:
+            # it must not roll away from its particles
+            bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
+            alone = _with_start(replace(scene, particles=()), bare, built.alone)
+        scene = _with_particles(replace(scene, start_from=built.start_from), alone)
         assert isinstance(line, (TrimmedContactLine, SphereContactLine))
         toward = np.atleast_2d(np.array(line.toward))
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))

@@ -25,7 +25,7 @@ from ..terms import (
     Term,
     TrimmedContactLine,
 )
-from .asperities import ball, smallest_model, whole_skin
+from .asperities import ball, fine_at, smallest_model, whole_skin
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, space_name
 from .pattern import Pattern, cell_of
 from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
@@ -60,6 +60,7 @@ class Foot:
     ----------
     predictor : other terms that give a better start.
     start_from : a start from the equilibrium of the same droplet without particles.
+    alone : what that droplet stands on, on the same patch.
     """
 
     surface: Surface
@@ -72,6 +73,7 @@ class Foot:
     tangent: bool = False
     predictor: Sequence[Term] = ()
     start_from: Callable[[Surface], Surface] | None = None
+    alone: Foot | None = None
 
 
 CONTACT_LINES = ("auto", "conforming", "trimmed", "adhesion")
@@ -146,12 +148,13 @@ def _on_an_area(parts: Question) -> Foot:
     tiny = 1e-14 * float(np.abs(parts.bond).max())
     local = scale.local_solid(substrate)
     lateral = (x if abs(x) > tiny else 0.0, y if abs(y) > tiny else 0.0)
-    smallest = smallest_model(local, 1.5, lateral)
+    particles = [scale.local_sphere(each) for each in parts.particles]
+    smallest = smallest_model(local, 1.5, lateral, particles)
     model = parts.asked.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):
         raise SceneError(
-            f'discretization.model = "{model}": gravity or the substrate has no such mirror '
-            f'planes; "{smallest}" is the smallest model here'
+            f'discretization.model = "{model}": gravity, the substrate or particles have no such '
+            f'mirror planes; "{smallest}" is the smallest model here'
         )
     unit, mesh = 4.0 * np.pi / 3.0, parts.asked.mesh(degree=2, elements=-1)
     length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
@@ -160,10 +163,18 @@ def _on_an_area(parts: Question) -> Foot:
     lies = attracts or least == 180.0
     unit_law = scale.length**2 / scale.tension
     stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
-    single = not stiffness and (least == 180.0 or parts.contact_line == "auto")
+    single = not stiffness and (least == 180.0 or parts.contact_line == "auto") and not particles
     psi = float(np.radians(180.0 - least))
     pattern = Pattern(length, cell_of(local), lies, psi, single, stiffness)
-    skin = whole_skin(parts.down, unit, pattern, mesh.degree, elements, parts.start)
+    skin = whole_skin(
+        parts.down,
+        unit,
+        pattern,
+        mesh.degree,
+        elements,
+        parts.start,
+        [fine_at(p) for p in particles],
+    )
     mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):

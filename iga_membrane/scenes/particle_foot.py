@@ -1,42 +1,104 @@
-"""The foot of a droplet with particles: a line on its plane, and lines inside the membrane."""
+"""The foot of a droplet with particles, and the lines inside its membrane."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from ..arrays import Index
 from ..errors import SceneError
-from ..solids import Plane, Sphere
+from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import SphereContactLine, TrimmedContactLine
 from .beside import as_list, check_reach, mirrored_model, towards_liquid
-from .foot import Foot, Question, Rest, rest_of, sector_of
+from .foot import PREDICTABLE, SHARP, Foot, Question, Rest, foot_of, rest_of, sector_of
 from .liquid import MODELS, Mesh
 from .particle_edge import ending_on, ending_space, seat_of
 from .round_patch import of_droplet, of_pancake, round_patch
 
 
 def with_particles(parts: Question) -> Foot:
-    """A drop on a plane whose membrane passes through particles."""
-    scale, mesh = parts.scale, parts.asked.mesh(degree=3, elements=-1)
-    if not isinstance(parts.substrate, Plane) or parts.substrate.contact_angle == 180.0:
-        raise SceneError(
-            "particle: not available yet on a droplet on spheres, or at 180 degrees on a plane"
-        )
-    conforming = parts.contact_line == "conforming"
-    if parts.contact_line == "adhesion" or (conforming and len(parts.particles) > 1):
+    """A drop whose membrane passes through particles, on a plane or on asperities, or on a plane
+    ends on one."""
+    ends = isinstance(parts.substrate, Plane) and len(parts.particles) == 1
+    ways = ("auto", "trimmed", "conforming") if ends else ("auto", "trimmed")
+    if parts.contact_line not in ways:
         raise SceneError(
             f'solver.contact_line = "{parts.contact_line}": not available with '
             f'{len(parts.particles)} particle(s), whose lines are "trimmed", or "conforming" if '
-            "there is one; leave it out"
+            "there is one, on a plane; leave it out"
         )
-    if parts.law.penalty is not None or parts.start is not None or mesh.space != "bspline":
+    if parts.law.penalty is not None or parts.start is not None or parts.asked.space != "bspline":
         raise SceneError(
             "particle: a droplet with particles needs the scene's own start, no penalty and space "
             '"bspline"'
         )
+    solid, least = parts.substrate, float(np.min(parts.substrate.contact_angle))
+    if isinstance(solid, Plane) and least < 180.0:
+        return _on_a_plane(parts)
+    lowest, highest = PREDICTABLE[0], SHARP
+    if isinstance(solid, (SphereLattice, Spheres)) and lowest <= least <= highest:
+        return _beside_asperities(parts)
+    raise SceneError(
+        f"particle: not available yet on this droplet, only on one on a plane below 180 degrees or "
+        f"on asperities of {lowest:g} to {highest:g} degrees"
+    )
+
+
+def _beside_asperities(parts: Question) -> Foot:
+    """The whole skin, which passes through asperities and particles."""
+    scale = parts.scale
+    foot = foot_of(parts)
+    start = foot.surface.moved(scale.to_local(foot.surface.points))
+    local = [scale.local_sphere(each) for each in parts.particles]
+    for i, (each, given) in enumerate(zip(local, parts.particles, strict=True)):
+        if each.center[2] < WIDEST * float(start.points[:, 2].max()):
+            raise SceneError(
+                f"particle[{i}].center = {list(given.center)}: not available yet so low beside "
+                f"asperities; put it above z = {WIDEST * float(foot.surface.points[:, 2].max()):g}"
+            )
+    reach = AROUND * float(np.linalg.norm(foot.surface.points[:, :2], axis=1).max())
+    solid = _one_list(parts.substrate, parts.particles, reach)
+    line = TrimmedContactLine(
+        parts.liquid.surface_tension, solid, towards_liquid(start, local, 1.0)
+    )
+    # contact lines take no part in shifts, and particles stand in their way
+    alone = replace(foot, supports=())
+    return replace(alone, terms=[line], predictor=(), alone=alone)
+
+
+def _one_list(substrate: Solid, particles: Sequence[Sphere], reach: float) -> Spheres:
+    """Asperities and, behind them, particles; of a lattice those within ``reach`` of the axis."""
+    assert isinstance(substrate, (SphereLattice, Spheres))
+    if isinstance(substrate, Spheres):
+        which: Index = np.arange(len(substrate.centers))
+    else:
+        which = substrate.within(reach)
+    angles = np.broadcast_to(substrate.contact_angle, which.shape)
+    grains = as_list(particles)
+    return Spheres(
+        np.concatenate([angles, grains.contact_angle]),
+        np.concatenate([substrate.center_of(which), grains.centers]),
+        np.concatenate([substrate.radius_of(which), grains.radii]),
+    )
+
+
+WIDEST = 0.45
+"""Height of a droplet on asperities, over that of its top, below which its directions turn."""
+AROUND = 2.0
+"""Distance from a droplet's axis, over its largest radius, of the spheres of a lattice that it may
+meet."""
+REACH = 1.5
+"""Distance over which the line's conormals turn into the membrane's normals."""
+
+
+def _on_a_plane(parts: Question) -> Foot:
+    """A ring patch whose edge is the line on the plane, its pole in a particle."""
+    scale, mesh = parts.scale, parts.asked.mesh(degree=3, elements=-1)
+    assert isinstance(parts.substrate, Plane)
     local = tuple(scale.local_sphere(each) for each in parts.particles)
     for i, (each, given) in enumerate(zip(local, parts.particles, strict=True)):
         if each.center[2] < each.radius * (1.0 - 1e-9):
@@ -53,7 +115,7 @@ def with_particles(parts: Question) -> Foot:
         )
     sector = Sector(mesh.model or model)
     rest = rest_of(parts.substrate, parts.liquid, scale, parts.down)
-    if conforming:
+    if parts.contact_line == "conforming":
         return _ending_on(parts, local[0], sector, mesh, rest)
     patch = round_patch(of_pancake(rest.pancake), local, mesh, 2 * sector.copies)
     start = patch.surface(of_pancake(rest.pancake))
@@ -93,7 +155,3 @@ def _ending_on(parts: Question, local: Sphere, sector: Sector, mesh: Mesh, rest:
 
     lines = [rest.line, line]
     return Foot(surface, sector, mesh, lines, support, None, start_from=from_alone)
-
-
-REACH = 1.5
-"""Distance over which the line's conormals turn into the membrane's normals."""

@@ -184,14 +184,33 @@ class Spheres:
 
         return cKDTree(np.asarray(self.centers))
 
+    @cached_property
+    def _sizes(self) -> list[tuple[float, Index, Any]]:
+        """Each radius with the numbers of its spheres and their tree; none where radii are many."""
+        from scipy.spatial import cKDTree
+
+        radii = np.asarray(self.radii)
+        sizes = np.unique(radii)
+        if len(sizes) > FEW:
+            return []
+        groups = [np.flatnonzero(radii == r) for r in sizes]
+        centers = np.asarray(self.centers)
+        return [(float(r), g, cKDTree(centers[g])) for r, g in zip(sizes, groups, strict=True)]
+
     def nearest(self, points: Array) -> Nearest:
         """Gap and its derivatives, by a tree."""
         flat = points.reshape(-1, 3)
         centers, radii = np.asarray(self.centers), np.asarray(self.radii)
-        distance, which = self._tree.query(flat)
-        which = np.asarray(which)
-        smallest, largest = float(radii.min()), float(radii.max())
-        if largest > smallest and len(flat):
+        if self._sizes:
+            which: Index = np.zeros(len(flat), int)
+            least = np.full(len(flat), np.inf)
+            for radius, group, tree in self._sizes:
+                distance, near = tree.query(flat)
+                wins = distance - radius < least
+                which = np.where(wins, group[near], which)
+                least = np.where(wins, distance - radius, least)
+        else:
+            distance, which = self._tree.query(flat)
             which = self._smallest_gap(flat, distance, which, radii)
         which = which.reshape(points.shape[:-1])
         found = nearest_of_balls(points, centers[which], radii[which], which)
@@ -218,6 +237,10 @@ class Spheres:
         """Numbers of the spheres whose centres lie within a distance of the z axis."""
         centers = np.asarray(self.centers)
         return np.flatnonzero(np.hypot(centers[:, 0], centers[:, 1]) <= reach)
+
+
+FEW = 8
+"""Radii of a list of spheres up to which each has a tree of its own."""
 
 
 def plane_below(points: Array, height: float) -> Nearest:

@@ -18,7 +18,7 @@ from .audit import Audit, audit
 from .contact_record import contact_record
 from .forces import ParticleForces, particle_forces
 from .inverse_root import SingularMatrix
-from .judge import contact_objection, judge, overload, reaches_boundary, too_soft
+from .judge import contact_objection, judge, overload, reaches_boundary, rolling, too_soft
 from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, volume
 from .newton import NewtonResult
@@ -50,7 +50,7 @@ def conclude(
     verdict, checked, kind = None, None, None
     status, message = result.status, result.message
     if status in REMEDY:
-        message = f"{message}: {REMEDY[status]}"
+        message = f"{message}: {REMEDY[status]}{rolling(scene)}"
     if status is not Status.INTERRUPTED:
         verdict, doubt = _examined(assembly, surface, multipliers)
         checked = _audited(scene, assembly, surface, multipliers) if options.audit else None

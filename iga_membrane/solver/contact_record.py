@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..scenes.scene import Scene
-from ..solids import Plane
+from ..solids import Plane, SphereLattice, Spheres
 from ..terms import LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit
@@ -79,6 +79,10 @@ def _footing(
     assert on is not None
     body = assembly.density(result.multipliers)
     feet = footing(scene, assembly, result.surface, body)
+    numbers = feet.which
+    if scene.particles and isinstance(scene.substrate, (SphereLattice, Spheres)):
+        # the membrane's solid is a list of its own
+        numbers = scene.substrate.nearest(scale.to_world(feet.centers)).which
     rows = [
         {
             "index": int(which),
@@ -89,7 +93,7 @@ def _footing(
             "contact_angle": float(angle),
         }
         for which, center, force, area, angle in zip(
-            feet.which, feet.centers, feet.forces, feet.areas, feet.angles, strict=True
+            numbers, feet.centers, feet.forces, feet.areas, feet.angles, strict=True
         )
         if which >= 0
     ]

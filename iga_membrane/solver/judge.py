@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Plane, Sphere, SphereLattice
+from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import Centroid, Contact
 from .assembly import Assembly
@@ -244,6 +244,15 @@ def overload(scene: Scene, assembly: Assembly, multipliers: Array) -> str:
         f"; the pressure came to {pressure * unit:.4g}, and a wide lattice of these asperities "
         f"carries {most * unit:.4g} at most: take a smaller spacing, or less volume or gravity"
     )
+
+
+def rolling(scene: Scene) -> str:
+    """What may help a droplet that its particles push over asperities, in words."""
+    free = [axis for axis in "xy" if axis not in scene.sector.mirrored + scene.hold]
+    if not (scene.particles and free and isinstance(scene.substrate, (SphereLattice, Spheres))):
+        return ""
+    held = "x" if free == ["x"] else "xy"
+    return f'; or let it not roll away from its particles by droplet.hold = "{held}"'
 
 
 def reaches_boundary(scene: Scene, surface: Surface) -> bool:

@@ -23,7 +23,8 @@ class LineOnSolid:
     Attributes
     ----------
     solid : its number, as in ``Solution.contact["asperities"]``; -1 for a plane. A droplet's
-        particles come after the asperities of its list.
+        particles come after the asperities of its list; on a lattice, that of the asperities which
+        the droplet may meet.
     line : geometry along it, in world coordinates and the user's units, once round the solid.
     """
 

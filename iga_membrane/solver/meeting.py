@@ -65,7 +65,8 @@ def trim_of(
         return None
     elements, portion = sector_elements(surface.space, scene.sector)
     at = vary.element_points(table, surface.points)
-    close = (term.solid.nearest(at.x).gap < 2.0 * term.solid.scale).any(axis=1)
+    beside = term.solid.nearest(at.x)
+    close = ((beside.gap < 2.0 * term.solid.scale) & (term.particle(beside.which) < 0)).any(axis=1)
     lengths = np.sqrt((at.area * table.weights).sum(axis=1) / portion)
     element = float(np.median(lengths[close])) / term.solid.scale if close.any() else 1.0
     images = mirrors(scene.sector)

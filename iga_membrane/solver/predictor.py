@@ -62,7 +62,7 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
     start, multipliers, before = scene.local_surface(), None, None
     if scene.predictor is not None:
         near = scene.predictor
-        before = newton(Assembly(near), near.local_surface(), None, near.meridian_grading, options)
+        before = first(near, Assembly(near), options)
         near_start = before.surface
         if scene.start_from is not None:
             near_start = scene.start_from(before.surface)
@@ -127,7 +127,10 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     which, place = np.unique(at.which, return_inverse=True)
     gap = np.full(len(which), np.inf)
     np.minimum.at(gap, place.ravel(), at.gap)
-    touched = np.flatnonzero((gap < 0) & (trim.term.particle(which) < 0))
+    on_asperity = (gap < 0) & (trim.term.particle(which) < 0)
+    # else it passes through them already
+    lies = scene.predictor is not None and law_of(scene.predictor) is not None
+    touched = np.flatnonzero(on_asperity & lies)
     which, depth = which[touched], -gap[touched]
     centers, radii = solid.center_of(which), solid.radius_of(which)
     wanted = radii * (1.0 + trim.term.cosine(which))

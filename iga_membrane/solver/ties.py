@@ -19,7 +19,7 @@ STRENGTH = 0.001, 0.02
 mesh, where it is steadier. It falls with the fourth power of a smaller angle: the error of a line's
 angle grows with it over that angle's square, and flat spots are steady with less."""
 AT_PARTICLES = 0.1
-"""The same with particles: the start may be far away, and along the smooth spines of a droplet ties
+"""The same at particles: the start may be far away, and along the smooth spines of a droplet ties
 cost the angle nothing."""
 COARSE = 0.3
 """Element over the contact length of a coarse mesh."""
@@ -39,7 +39,7 @@ class Ties:
 
     Attributes
     ----------
-    strength : factor of the jumps' energy over the tension.
+    strength : factor of the jumps' energy over the tension, but at particles.
     firmness : by which it is larger than usual.
     """
 
@@ -60,20 +60,20 @@ class Ties:
         self._unknowns = unknowns[space.functions[elements]]
         self._factor: tuple[Array, Any] | None = None
 
-    def begin(self, steepness: float, element: float, particles: bool) -> None:
+    def begin(self, steepness: float, element: float) -> None:
         """Free to choose again, for a membrane that meets its solid at an angle (radians), with
-        elements of a size over the contact length; and whether there are ``particles``."""
+        elements of a size over the contact length."""
         steep = min(steepness / (0.25 * np.pi), 1.0)
         wanted = STRENGTH[1] * steep**4 * (element / COARSE) ** 2
-        usual = AT_PARTICLES if particles else float(np.clip(wanted, *STRENGTH))
-        self.strength = self.firmness * usual
+        self.strength = float(np.clip(wanted, *STRENGTH))
         none = np.zeros(len(self._elements), bool)
         self._held, self._touched, self._last = none, none, (none, none)
+        self._strength: Array = np.zeros(len(none))
         self._calls = 0
 
-    def hold(self, active: Mask, touched: Mask) -> None:
+    def hold(self, active: Mask, touched: Mask, on_particle: Mask) -> None:
         """Choose for a state whose ``active`` elements have a part outside, the ``touched`` ones
-        another inside."""
+        another inside; what is nearest to some of them is a particle."""
         self._calls += 1
         before, self._last = self._last, (active, touched)
         held = active
@@ -84,38 +84,41 @@ class Ties:
         if np.array_equal(held, self._held) and np.array_equal(touched, self._touched):
             return
         self._held, self._touched = held, touched
+        self._strength = self.firmness * np.where(on_particle, AT_PARTICLES, self.strength)
         for name in ("across", "idle", "_graph"):
             self.__dict__.pop(name, None)
         self._factor = None
 
     @cached_property
     def across(self) -> tuple[Index, Array, Array]:
-        """Functions (k, 2 local), jumps (k, q, 2 local) and weights (k, q) of the tied faces."""
+        """Functions (k, 2 local), jumps (k, q, 2 local) and weights (k, q) of the tied faces, their
+        strength included."""
         f = self._faces
         first, second = self._held[f.first], self._held[f.second]
         cuts = self._touched[f.first] | self._touched[f.second]
         tied = f.part(first & second & cuts)
         functions, rows, weights = jumps(self._space, self._elements, tied)
         portion = np.minimum(self._portion[tied.first], self._portion[tied.second])
-        return functions, rows, weights * portion[:, None]
+        strength = np.maximum(self._strength[tied.first], self._strength[tied.second])
+        return functions, rows, weights * (portion * strength)[:, None]
 
     def energy(self, points: Array) -> float:
         """Energy of the ties, tension 1."""
         functions, rows, weights = self.across
         jump = rows @ points[functions]
-        return float(0.5 * self.strength * ((jump**2).sum(axis=-1) * weights).sum())
+        return float(0.5 * ((jump**2).sum(axis=-1) * weights).sum())
 
     def forces(self, points: Array) -> Array:
         """(faces, 2 local, 3)"""
         functions, rows, weights = self.across
         jump = rows @ points[functions]
-        return np.asarray(rows.transpose(0, 2, 1) @ (jump * (self.strength * weights)[..., None]))
+        return np.asarray(rows.transpose(0, 2, 1) @ (jump * weights[..., None]))
 
     def hessian(self, directions: Array) -> Array:
         """(faces, 2 local, 2 local) along directions (control points, 3)."""
         functions, rows, weights = self.across
         d = directions[functions]
-        blocks = rows.transpose(0, 2, 1) @ (rows * (self.strength * weights)[..., None])
+        blocks = rows.transpose(0, 2, 1) @ (rows * weights[..., None])
         return np.asarray(blocks * (d @ d.transpose(0, 2, 1)))
 
     @cached_property

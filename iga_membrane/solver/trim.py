@@ -87,8 +87,8 @@ class Trim:
 
     def begin(self) -> None:
         """Free to choose again what is tied; spots are where they were."""
-        least = float(np.min(self.term.solid.contact_angle))
-        self.ties.begin(np.pi - np.radians(least), self._element, self.term.toward is not None)
+        least = np.min(self.term.angles_of_substrate, initial=180.0)
+        self.ties.begin(np.pi - np.radians(float(least)), self._element)
         self._known.clear()
 
     @property
@@ -217,17 +217,25 @@ class Trim:
         there, meet it again about ``psi r`` farther in.
         """
         line, solid = self.on_line(points), self.term.solid
-        arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
-        x = np.concatenate([line.x @ m for m in self._images])
-        arc = np.tile(arc, (len(self._images), 1)).ravel()
-        which = solid.nearest(x).which.ravel()
-        x = x.reshape(-1, 3)
-        numbers, place = np.unique(which, return_inverse=True)
-        weight = np.bincount(place, arc)
-        middles = np.stack([np.bincount(place, arc * v) / weight for v in x.T], axis=1)
-        radii = np.full(len(numbers), np.inf)
-        away = _across(x - middles[place], self.term.axis(which))
-        np.minimum.at(radii, place, np.linalg.norm(away, axis=1))
+        speed = np.linalg.norm(line.tangent, axis=-1)
+        along = line.tangent / speed[..., None]
+        rise = np.sign(line.gh)[..., None] * line.ah
+        rise = rise - np.einsum("kqi,kqi->kq", rise, along)[..., None] * along
+        x, dry = (np.concatenate([v @ m for m in self._images]).reshape(-1, 3)
+                  for v in (line.x, rise))  # fmt: skip
+        arc = np.tile(speed * line.table.weights, (len(self._images), 1)).ravel()
+        numbers: Index
+        numbers, place = np.unique(solid.nearest(x).which, return_inverse=True)
+        outer: Mask = np.ones(len(x), bool)
+        for _ in range(2):
+            weight = np.bincount(place, arc * outer)
+            middles = np.stack([np.bincount(place, arc * outer * v) / weight for v in x.T], axis=1)
+            away = _across(x - middles[place], self.term.axis(numbers[place]))
+            # inside a spot the spline may rise out of its solid again: no contact line
+            outer = np.einsum("ki,ki->k", away, dry) > 0.0
+            outer |= np.bincount(place, outer)[place] == 0
+        radii: Array = np.full(len(numbers), np.inf)
+        np.minimum.at(radii, place[outer], np.linalg.norm(away[outer], axis=1))
         psi = np.pi - np.arccos(self.term.cosine(numbers))
         again = 0.5 * psi * solid.radius_of(numbers)
         # on a particle, which may stand anywhere, a line has farther to go than on an asperity
@@ -285,7 +293,9 @@ class Trim:
     def hold(self, points: Array) -> None:
         """Choose what is tied and what is idle, for a state and the steps from it."""
         self._find_cores(points)
-        self.ties.hold(self.counts(points), self.outside(points).touched)
+        middle = (self.table.values @ points[self.table.functions]).mean(axis=1)
+        nearest = self.term.particle(self.term.solid.nearest(middle).which)
+        self.ties.hold(self.counts(points), self.outside(points).touched, nearest >= 0)
 
 
 def _across(vectors: Array, axes: Array) -> Array:

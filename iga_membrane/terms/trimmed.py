@@ -82,6 +82,12 @@ class TrimmedContactLine(Term):
             return np.full(np.shape(which), -1)
         return np.maximum(np.asarray(which) - len(self.solid.centers) + len(self.toward), -1)
 
+    @property
+    def angles_of_substrate(self) -> Array:
+        """Contact angles in degrees, those of particles left out."""
+        angles = np.atleast_1d(np.asarray(self.solid.contact_angle, float))
+        return angles if self.toward is None else angles[: len(angles) - len(self.toward)]
+
     def cosine(self, which: Index) -> Array:
         """(...) cosine of the contact angle on spheres by their numbers."""
         angles = np.radians(np.asarray(self.solid.contact_angle))

@@ -107,6 +107,15 @@ def test_cassie_limit():
     assert example.level_line(180.0, 0.04) == pytest.approx(0.1 * np.pi / (0.04 - np.pi * 0.05**2))
 
 
+def test_whole_system():
+    found = load("whole_system").main(elements=50)
+    weight = np.linalg.norm(found["weight"])
+    assert np.abs(found["missing"]).max() < 1e-3 * weight
+    # the droplet pushes all three outwards
+    assert found["particle 0"][0] > 0.02 > -0.02 > found["particle 1"][0]
+    assert all(found[f"particle {k}"][2] > 0.05 for k in range(3))
+
+
 def test_particle_on_droplet():
     rows = load("particle_on_droplet").main(polar=(60.0, 90.0), elements=16)
     for row in rows:

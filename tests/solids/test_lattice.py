@@ -17,6 +17,11 @@ def several_sizes(base=None):
     return iga.Spheres(180.0, rng.uniform(-1, 1, (60, 3)), rng.uniform(0.02, 0.4, 60), base)
 
 
+def two_sizes():
+    rng = np.random.default_rng(4)
+    return iga.Spheres(180.0, rng.uniform(-1, 1, (60, 3)), rng.choice([0.05, 0.3], 60))
+
+
 def same_sizes():
     return iga.Spheres(180.0, np.random.default_rng(2).uniform(-1, 1, (60, 3)), 0.1)
 
@@ -28,6 +33,7 @@ SOLIDS = {
     "hexagonal, moved": lattice("hexagonal", (-0.06, 0.09)),
     "on a base": lattice(base=-0.15),
     "list": same_sizes(),
+    "two sizes": two_sizes(),
     "several sizes": several_sizes(),
     "several sizes on a base": several_sizes(base=-0.2),
 }

@@ -44,7 +44,7 @@ def test_derivatives_of_the_supports_energy(model, angle):
     contact.hold(surface.points - [0.0, 0.0, 2e-2])  # all are wet
     contact.hold(surface.points - [0.0, 0.0, 2e-2])
     # from pulled on one side to pressed on the other
-    surface = surface.moved(surface.points - (surface.points[:, :1] - 0.3) * [0.0, 0.0, 1.5e-2])
+    surface = surface.moved(surface.points - (surface.points[:, :1] - 0.3) * [0.0, 0.0, 3e-2])
     motion = assembly.spines.on(surface)
     touch = contact.touch(surface.points)
     assert (touch.traction > 0.0).any()
