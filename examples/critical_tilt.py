@@ -1,0 +1,24 @@
+"""The tilt, in degrees, at which a droplet lets go of the particle that holds it on a plane."""
+
+import numpy as np
+
+import iga_membrane as iga
+
+PARTICLE = iga.Sphere(contact_angle=70.0, radius=0.3, center=(0.0, 0.0, 1.62))
+
+
+def scene(tilt: float, elements: int | None = None) -> iga.Scene:
+    down = np.array([np.sin(np.radians(tilt)), 0.0, -np.cos(np.radians(tilt))])
+    mesh = iga.Discretization(elements=elements, model="half")
+    plane, volume = iga.Plane(contact_angle=150.0), 4.0 * np.pi / 3.0
+    return iga.sessile_droplet(
+        plane, volume=volume, gravity=0.5 * down, particles=[PARTICLE], discretization=mesh
+    )
+
+
+def main(elements: int | None = None) -> iga.Path:
+    return iga.trace(lambda t: scene(t, elements), (0.0, 5.0, 30.0), on_fail="return")
+
+
+if __name__ == "__main__":
+    print(main().end.message)
