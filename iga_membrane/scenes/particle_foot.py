@@ -30,23 +30,13 @@ def discretizations(
     fails.
 
     A membrane that ends on its particle is cheaper and more exact; one that passes through it may
-    also lose it, and is solved where the lines on particle and plane nearly touch. A particle that
-    moves meets one discretization everywhere: the small difference between two would be a force.
+    also lose it, and is solved more often where lines nearly touch. A particle that moves meets one
+    discretization everywhere: the small difference between two would be a force.
     """
     one = isinstance(substrate, Plane) and substrate.contact_angle < 180.0 and len(particles) == 1
     if contact_line != "auto" or not one:
         return (contact_line,)
-    assert isinstance(substrate, Plane)
-    (particle,) = particles
-    above = float(substrate.gap(np.array(particle.center))) - particle.radius
-    if particle.motion != "fixed" or above < TOUCHING * particle.radius:
-        return ("trimmed",)
-    return ("conforming", "trimmed")
-
-
-TOUCHING = 0.1
-"""Gap between particle and plane, over the particle's radius, below which their lines nearly
-touch."""
+    return ("conforming", "trimmed") if particles[0].motion == "fixed" else ("trimmed",)
 
 
 def with_particles(parts: Question) -> Foot:
