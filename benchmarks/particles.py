@@ -174,9 +174,11 @@ def said(found: iga.Solution) -> str:
     return " ".join(word for word in words if word)
 
 
-def row(angle: float, radius: float, place: np.ndarray, bond: float, name: str) -> bool:
-    start = process_time()
-    found = iga.solve(on_droplet(angle, radius, place, bond), LIMIT, on_fail="return")
+def row(
+    angle: float, radius: float, place: np.ndarray, bond: float, name: str, limit: float = 120.0
+) -> bool:
+    start, options = process_time(), iga.SolverOptions(max_cpu_s=limit)
+    found = iga.solve(on_droplet(angle, radius, place, bond), options, on_fail="return")
     force, size = pull(found), max(bond * VOLUME, 1.0)
     sideways = abs(found.hold_force[0] - force[0]) / size
     upwards = abs(found.contact["support_force"] - force[2] - bond * VOLUME) / size
@@ -214,7 +216,7 @@ def grid() -> None:
                 place, name = at_polar(x, height, polar), f"{polar:g}"
                 if place[1] < radius:
                     place, name = at_rest(x, height, radius), "resting"
-                solved.append(row(angle, radius, place, 0.5, name))
+                solved.append(row(angle, radius, place, 0.5, name, limit=60.0))
     print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
 
 
