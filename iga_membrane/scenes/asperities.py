@@ -141,7 +141,8 @@ def whole_skin(
 def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
     """How far out asperities may be wet."""
     widest = 0.95 * float(drop.r.max())
-    wide = 1.1 * drop.foot * (1.0 if pattern.lies else SPREAD) + 2.0 * pattern.length
+    spreads = not pattern.lies or (many and not pattern.repels and pattern.narrow(drop.pressure))
+    wide = 1.1 * drop.foot * (SPREAD if spreads else 1.0) + 2.0 * pattern.length
     if many and pattern.repels:
         # the sag brings the rim, of curvature p, as much lower
         rim = np.sqrt(2.0 * pattern.sag(drop.pressure) / drop.pressure)

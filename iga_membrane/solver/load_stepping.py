@@ -63,7 +63,7 @@ class Progress:
     ----------
     digest : of the ramp and the options that it belongs to.
     load : the last good one; step : the next one's length.
-    result : the state there; tractions : multipliers of contact, if there is any.
+    result : the state there; memory : of its contact, if there is any.
     steps : every attempt so far.
     found : solutions at the ramp's values so far.
     """
@@ -72,7 +72,7 @@ class Progress:
     load: float
     step: float
     result: NewtonResult
-    tractions: Array | None
+    memory: Array | None
     steps: Sequence[LoadStep]
     found: Sequence[Any] = ()
 
@@ -183,10 +183,10 @@ def _note(
     journal: Journal, path: LoadPath, step: float, assembly: Assembly, found: Sequence[Any]
 ) -> None:
     """Write down a converged step."""
-    tractions = None if assembly.contact is None else assembly.contact.multipliers.copy()
+    memory = None if assembly.contact is None else assembly.contact.memory
     result = replace(path.result, iterations=list(path.result.iterations))
     path.progress = Progress(
-        journal.digest, path.last_good, step, result, tractions, tuple(path.steps), tuple(found)
+        journal.digest, path.last_good, step, result, memory, tuple(path.steps), tuple(found)
     )
     journal.write(path.progress)
 
@@ -197,8 +197,8 @@ def _resumed(
     """The path as it was when its progress was written, and the next step."""
     scene = ramp(start.load)
     assembly.load(scene)
-    if assembly.contact is not None and start.tractions is not None:
-        assembly.contact.multipliers = start.tractions.copy()
+    if assembly.contact is not None and start.memory is not None:
+        assembly.contact.recall(start.memory)
     result = replace(start.result, iterations=list(start.result.iterations))
     path = LoadPath(result, scene, list(start.steps), start.load, progress=start)
     return path, start.step, start.found

@@ -128,6 +128,7 @@ def newton(
     """
     count = assembly.multipliers
     if assembly.contact is not None:
+        assembly.follow(surface)
         assembly.contact.begin()
     if assembly.trim is not None:
         assembly.trim.begin()

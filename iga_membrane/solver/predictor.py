@@ -67,7 +67,6 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
         if scene.start_from is not None:
             near_start = scene.start_from(before.surface)
         start = near_start
-        assembly.follow(near_start)
         if assembly.trim is not None:
             start = pressed(scene, assembly, near_start)
             assembly.keep_motion(near_start)
