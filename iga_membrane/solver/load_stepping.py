@@ -142,7 +142,7 @@ def load_stepping(
     else:
         scene = ramp(0.0)
         assembly.load(scene)
-        result = first(scene, assembly, options)
+        result = first(scene, assembly, replace(options, phase="load 0"))
         wet = _wet_set(assembly, scene, result)
         begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0), wet)
         path, step = LoadPath(result, scene, [begun]), 0.25
@@ -155,7 +155,8 @@ def load_stepping(
         stop = float(stops[np.searchsorted(stops, path.last_good, "right")])
         load = min(stop, path.last_good + step)
         scene = ramp(load)
-        result = _attempt(assembly, path, scene, attempts)
+        phase = replace(attempts, phase=f"load {load:.3g}")
+        result = _attempt(assembly, path, scene, phase)
         wet = _wet_set(assembly, scene, result)
         tried = LoadStep(load, len(result.iterations), result.status, ramp.value(load), wet)
         path.steps.append(tried)
