@@ -179,9 +179,9 @@ def main() -> None:
         "",
         "## What is converged and what is not",
         "",
-        "- Height changes by point supports are within 3 % of those of resolved spots and contact "
-        "lines, from 180 to 120 degrees, wet areas within 0.2 %; half of that is the mesh between "
-        "the supports.",
+        "- Where the same asperities are wet, height changes by point supports are within 3 % of "
+        "those of resolved spots and contact lines, from 180 to 120 degrees, and wet areas within "
+        "0.2 %; half of that is the mesh between the supports.",
         "- The apparent and the Cassie-Baxter angle, wet areas and forces are those of the same "
         "states; wet areas follow from the forces.",
         "- Between its supports the membrane is that of the mesh: curvatures near an asperity mean "
