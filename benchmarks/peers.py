@@ -294,7 +294,7 @@ READING = [
     "height in less time than the default mesh here; its contact radius stays behind by three "
     "digits.",
     "- The rough droplet: with the penalty of the paper, 1e4, its foot sinks so far that the "
-    "height is low by 2e-3 on any mesh; an error below 1e-3 needs 1e5, which costs 60 to 90 times "
+    "height is low by 2e-3 on any mesh; an error below 1e-3 needs 1e5, which costs 100 times "
     "the solve of this package on point supports with a smaller error, and more than 20 times one "
     "whose wet spots are resolved.",
     "- Surface Evolver's finest foot has not settled after its 26 Newton steps: every such run "
