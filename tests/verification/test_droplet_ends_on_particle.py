@@ -126,6 +126,19 @@ def test_passes_through_particle_where_ending_on_it_fails():
     assert len(chosen.iterations) == len(ends.iterations) + len(passes.iterations)
 
 
+def test_starts_from_a_state_of_either_discretization(tmp_path):
+    """From another start control points move along other directions: the same but for the error of
+    so coarse a mesh."""
+    mesh = {"elements": 12, "model": "full", "hold": "xy"}
+    for line in ("conforming", "trimmed"):
+        before, path = iga.solve(scene(particle(), line=line, **mesh)), tmp_path / f"{line}.npz"
+        before.save(path)
+        again = iga.solve(scene(particle(), line="auto", **mesh), iga.SolverOptions(start=path))
+        assert again.unknowns == before.unknowns
+        assert len(again.iterations) < len(before.iterations)
+        assert size(pull(again) - pull(before)) < 1e-3 * size(pull(before))
+
+
 @pytest.mark.slow
 def test_lost_particle_is_named_and_confirmed():
     """Hardly wet particles that are pulled out: no line on them, and the way to them has an end."""
