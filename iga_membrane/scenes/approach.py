@@ -18,8 +18,6 @@ EASY = 60.0, 130.0
 """Contact angles of particles, in degrees, between which their menisci are good starts."""
 EASIEST = 90.0
 """The angle from which a solve between them is approached if its own start fails."""
-
-
 AROUND = 12.0
 """Degrees above its own angle from which a scene is approached if its own start fails."""
 
@@ -42,7 +40,8 @@ def from_another_angle(scene: Scene, terms: Sequence[Term], built: Foot) -> Scen
         ramp = Ramp("substrate.contact_angle", (good, least), started, only=True)
         return replace(scene, ramp=ramp)
     # another angle may have a better start; its wet set may be another one, too
-    ramp = Ramp("substrate.contact_angle", (least + AROUND, least), started)
+    easier = min(least + AROUND, 0.5 * (least + 180.0))
+    ramp = Ramp("substrate.contact_angle", (easier, least), started)
     return replace(started(least), ramp=ramp)
 
 

@@ -108,9 +108,10 @@ def sessile_droplet(
     contact_line, *others = discretizations(asked_substrate, grains, contact_line)
     acceleration = _acceleration(gravity)
     bridges = asked_substrate is None and len(grains) == 2
-    origin, axes = _frame(substrate, free=asked_substrate is None)
     if bridges:
         origin, axes = grains[0].center, axes_between(grains)
+    else:
+        origin, axes = _frame(substrate, free=asked_substrate is None)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
