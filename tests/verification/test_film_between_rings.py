@@ -111,3 +111,17 @@ def test_film_through_the_command_line(tmp_path):
 def test_bad_rings_are_refused(rings, said):
     with pytest.raises(iga.SceneError, match=said):
         iga.read_scene({"scene": "film_between_rings", "rings": rings})
+
+
+@pytest.mark.parametrize(("ratio", "stable"), [(1.5, True), (4.0, False)])
+def test_swollen_bridge_gives_way_sideways(ratio, stable):
+    """Its round state is stable against round disturbances; the default model sees others too."""
+    volume = ratio * np.pi
+    round_only = iga.Discretization(model="eighth")
+    assert iga.solve(
+        iga.film_between_rings(half_height=0.5, volume=volume, discretization=round_only)
+    ).success
+    found = iga.solve(iga.film_between_rings(half_height=0.5, volume=volume), on_fail="return")
+    assert found.scene.sector.model == "half"
+    assert found.success == stable
+    assert stable or found.status is iga.Status.CONVERGED_SADDLE
