@@ -14,7 +14,8 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-TERMS = ("terms", "solver/test_derivatives.py", "solver/test_solve.py", "verification/test_sheet_on_particle.py",
+TERMS = ("terms", "solver/test_derivatives.py", "solver/test_solve.py",
+         "verification/test_sheet_on_particle.py",
          "verification/test_droplet_on_plane.py", "robustness/test_audit.py",
          "verification/test_pinned_cap.py", "verification/test_square_sheet.py")  # fmt: skip
 SPOTS = ("solids/test_wet_spot.py", "solver/test_point_supports.py")
