@@ -72,7 +72,7 @@ def main() -> int:
 def _caught_by(file: str, old: str, new: str) -> str:
     """The first test that fails with a mutant, or nothing."""
     with tempfile.TemporaryDirectory() as folder:
-        for part in ("iga_membrane", "tests"):
+        for part in ("iga_membrane", "tests", "examples"):
             shutil.copytree(ROOT / part, Path(folder) / part,
                             ignore=shutil.ignore_patterns("__pycache__"))  # fmt: skip
         shutil.copy(ROOT / "pyproject.toml", folder)
