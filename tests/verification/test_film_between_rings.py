@@ -39,7 +39,10 @@ def test_area_superconverges(degree):
     assert abs(errors[-1]) < {2: 1e-6, 3: 1e-8, 4: 1e-9}[degree]
 
 
-@pytest.mark.parametrize(("degree", "elements"), [(2, 8), (3, 8), (3, 16), (4, 20)])
+@pytest.mark.parametrize(
+    ("degree", "elements"),
+    [(2, 8), (3, 8), (3, 16), pytest.param(4, 20, marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize("beyond", [1.005, 1.02, 1.04])
 def test_no_film_beyond_the_limit_on_any_mesh(degree, elements, beyond):
     scene = iga.film_between_rings(
