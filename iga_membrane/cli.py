@@ -15,7 +15,7 @@ from typing import Any
 from . import __version__
 from .errors import GeometryError, OutputError, SceneError, StateError
 from .files import check_folder, previous
-from .progress import bar
+from .progress import bar, iterations
 from .progress import log as progress_log
 from .scenes.scene_file import load_scene, read_tables
 from .solver.options import SolverOptions
@@ -32,6 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     progress_log.setLevel(logging.INFO if given.progress else logging.WARNING)
+    iterations.setLevel(logging.DEBUG if given.progress else logging.WARNING)
     try:
         code: int = given.run(given)
         return code

@@ -2,13 +2,14 @@
 
 import logging
 import os
+import re
 import subprocess
 import sys
 
 import pytest
 from helpers import droplet_file
 
-from iga_membrane.progress import bar
+from iga_membrane.progress import bar, iterations
 
 
 def test_progress_is_a_line_for_every_tenth_in_a_log(caplog):
@@ -34,6 +35,8 @@ def test_a_pipe_gets_nothing_but_the_result_unless_asked(command):
     )
     assert quiet.stderr == ""
     assert "solving: 100 %" in asked.stderr.splitlines()
+    # phase, number and residual of every Newton iteration
+    assert re.search(r"^load 1, \d+, residual \de-\d\d$", asked.stderr, re.MULTILINE)
     assert quiet.stdout.startswith("CONVERGED_STABLE")
 
 
@@ -53,4 +56,26 @@ def test_a_terminal_gets_a_bar(command):
     os.close(there)
     assert run.wait() == 0
     assert b"solving" in text
+    assert re.search(rb"solving: load [\d.]+, \d+, residual \de-\d\d", text)
     assert b"100%" in text
+
+
+def test_the_bar_counts_the_digits_of_one_solve(monkeypatch):
+    rich = pytest.importorskip("rich.progress")
+    drawn = []
+    update = rich.Progress.update
+
+    def noted(self, task, **changes):
+        update(self, task, **changes)
+        drawn.append((self.tasks[task].completed, self.tasks[task].description))
+
+    monkeypatch.setattr(rich.Progress, "update", noted)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with bar("solving"):
+        for number, residual in enumerate((1e-1, 1e-3, 1e-2, 1e-6, 1e-13), start=1):
+            iterations.debug("%s, %d, residual %.0e", "solve", number, residual)
+    parts = [part for part, _ in drawn]
+    assert parts == sorted(parts)
+    assert parts[-1] == pytest.approx(1.0)
+    assert drawn[-1][1] == "solving: solve, 5, residual 1e-13"
+    assert not iterations.handlers

@@ -19,6 +19,7 @@ from ..surface.surface import Surface
 from .beside import mirrored_model
 from .liquid import Model
 from .pattern import (
+    FEW,
     FINE,
     LEAST,
     RING,
@@ -117,13 +118,15 @@ def whole_skin(
     wide = _foot(drop, pattern, many)
     meridian = _meridian(drop, wide)
     reach = inverse_lemniscate_sine(meridian.size_at(wide))
+    coarse = bool(elements)  # by the user's wish
     if spots:
         fine, needed = _finest(meridian, reach, PER_RADIUS * wide / length, spots)
         elements = elements or needed
     else:
         elements = elements or _elements(drop, pattern, wide, reach, many)
         fine = fine_part(reach, elements) if many else FINE
-    narrow = many and pattern.unresolved(drop.pressure, wide / (fine * elements))
+    enough = many or (coarse and pattern.repels and pattern.under(drop.foot) > FEW)
+    narrow = enough and pattern.unresolved(drop.pressure, wide / (fine * elements))
     ring = RING * pattern.spot(drop.pressure) if narrow else None
     stretch = Stretch(fine, reach / fine) if reach < fine or spots else Stretch()
     space = pillow_space(degree, elements)
@@ -141,7 +144,8 @@ def whole_skin(
 def _foot(drop: FlatDrop, pattern: Pattern, many: bool) -> float:
     """How far out asperities may be wet."""
     widest = 0.95 * float(drop.r.max())
-    wide = 1.1 * drop.foot * (1.0 if pattern.lies else SPREAD) + 2.0 * pattern.length
+    spreads = not pattern.lies or (many and not pattern.repels and pattern.narrow(drop.pressure))
+    wide = 1.1 * drop.foot * (SPREAD if spreads else 1.0) + 2.0 * pattern.length
     if many and pattern.repels:
         # the sag brings the rim, of curvature p, as much lower
         rim = np.sqrt(2.0 * pattern.sag(drop.pressure) / drop.pressure)

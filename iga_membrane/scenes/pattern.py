@@ -18,9 +18,10 @@ from ..splines.point_load import ROBIN
 FINE = 0.75
 """Part of the elements from the middle of the square to a side that lies under the foot, at
 least."""
-MANY = 100
-"""Asperities under the foot from which they are many: the start is then the drop on their tops,
-pressed on them, and contact is a hard penalty at all quadrature points."""
+FEW, MANY = 20, 100
+"""Asperities under the foot up to which they are resolved on any mesh, and from which they are
+many: the start is then the drop on their tops, pressed on them, and contact at 180 degrees is a
+hard penalty at all quadrature points where it is resolved."""
 PER_SPOT = 2.2, 1.25
 """Elements along the radius of the smallest of many asperities, and along that of its wet spot, by
 default."""
@@ -66,9 +67,13 @@ class Pattern:
         """Whether the contact angle is 180 degrees."""
         return self.psi == 0.0
 
+    def under(self, foot: float) -> float:
+        """Number of asperities under a foot of a radius."""
+        return float(np.pi * foot**2 / self.cell)
+
     def many(self, foot: float) -> bool:
-        """Whether many asperities lie under a foot of a radius."""
-        return bool(np.pi * foot**2 > MANY * self.cell)
+        """Whether many asperities lie there."""
+        return self.under(foot) > MANY
 
     @property
     def spacing(self) -> float:

@@ -133,6 +133,15 @@ class ContactSet:
         """Angles in radians at which the membrane leaves spheres, pi minus the contact angles."""
         return np.full(np.shape(which), np.arccos(1.0 - self.adhesion / tension))
 
+    @property
+    def memory(self) -> Array:
+        """What a solve at the next load needs to know: the multipliers."""
+        return self.multipliers.copy()
+
+    def recall(self, memory: Array) -> None:
+        """Take the :attr:`memory` of another contact of the same membrane."""
+        self.multipliers = memory.copy()
+
     def hold(self, points: Array) -> None:
         """Take note of a state that steps lead away from; gaps have no memory."""
 

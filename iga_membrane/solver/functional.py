@@ -128,10 +128,10 @@ class Functional:
             self.trim.term = line
             self.trim.forget()
         if self.contact is not None and not same_law(law, self._law):
-            tractions = self.contact.multipliers
+            memory = self.contact.memory
             self.contact = contact_of(scene, self._start, self.points)
             assert self.contact is not None
-            self.contact.multipliers = tractions
+            self.contact.recall(memory)
         self._law = law
         self.contact_rows = self._contact_rows()
 

@@ -63,7 +63,7 @@ class Progress:
     ----------
     digest : of the ramp and the options that it belongs to.
     load : the last good one; step : the next one's length.
-    result : the state there; tractions : multipliers of contact, if there is any.
+    result : the state there; memory : of its contact, if there is any.
     steps : every attempt so far.
     found : solutions at the ramp's values so far.
     """
@@ -72,7 +72,7 @@ class Progress:
     load: float
     step: float
     result: NewtonResult
-    tractions: Array | None
+    memory: Array | None
     steps: Sequence[LoadStep]
     found: Sequence[Any] = ()
 
@@ -142,7 +142,7 @@ def load_stepping(
     else:
         scene = ramp(0.0)
         assembly.load(scene)
-        result = first(scene, assembly, options)
+        result = first(scene, assembly, replace(options, phase="load 0"))
         wet = _wet_set(assembly, scene, result)
         begun = LoadStep(0.0, len(result.iterations), result.status, ramp.value(0.0), wet)
         path, step = LoadPath(result, scene, [begun]), 0.25
@@ -155,7 +155,8 @@ def load_stepping(
         stop = float(stops[np.searchsorted(stops, path.last_good, "right")])
         load = min(stop, path.last_good + step)
         scene = ramp(load)
-        result = _attempt(assembly, path, scene, attempts)
+        phase = replace(attempts, phase=f"load {load:.3g}")
+        result = _attempt(assembly, path, scene, phase)
         wet = _wet_set(assembly, scene, result)
         tried = LoadStep(load, len(result.iterations), result.status, ramp.value(load), wet)
         path.steps.append(tried)
@@ -183,10 +184,10 @@ def _note(
     journal: Journal, path: LoadPath, step: float, assembly: Assembly, found: Sequence[Any]
 ) -> None:
     """Write down a converged step."""
-    tractions = None if assembly.contact is None else assembly.contact.multipliers.copy()
+    memory = None if assembly.contact is None else assembly.contact.memory
     result = replace(path.result, iterations=list(path.result.iterations))
     path.progress = Progress(
-        journal.digest, path.last_good, step, result, tractions, tuple(path.steps), tuple(found)
+        journal.digest, path.last_good, step, result, memory, tuple(path.steps), tuple(found)
     )
     journal.write(path.progress)
 
@@ -197,8 +198,8 @@ def _resumed(
     """The path as it was when its progress was written, and the next step."""
     scene = ramp(start.load)
     assembly.load(scene)
-    if assembly.contact is not None and start.tractions is not None:
-        assembly.contact.multipliers = start.tractions.copy()
+    if assembly.contact is not None and start.memory is not None:
+        assembly.contact.recall(start.memory)
     result = replace(start.result, iterations=list(start.result.iterations))
     path = LoadPath(result, scene, list(start.steps), start.load, progress=start)
     return path, start.step, start.found

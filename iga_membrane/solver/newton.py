@@ -7,6 +7,7 @@ meridians by arc length again while steps are large.
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, field
 from time import process_time
 
@@ -21,6 +22,8 @@ from .assembly import Assembly, System
 from .inverse_root import SingularMatrix
 from .linear import Bordered
 from .status import Status
+
+log = logging.getLogger(__name__)
 
 NEAR = 1e-3
 """Relative residual below which an unstable equilibrium is approached, not fled."""
@@ -61,6 +64,7 @@ class NewtonOptions:
     polish_below : steps smaller than this are followed by a last walk by arc length.
     near : relative residual below which an unstable equilibrium is approached, not fled.
     deadline : CPU time (``process_time``) after which to stop.
+    phase : what its iterations are called in a log.
     """
 
     max_iterations: int = 50
@@ -69,6 +73,7 @@ class NewtonOptions:
     polish_below: float = 1e-3
     near: float = NEAR
     deadline: float = float("inf")
+    phase: str = "solve"
 
 
 @dataclass(frozen=True)
@@ -128,6 +133,7 @@ def newton(
     """
     count = assembly.multipliers
     if assembly.contact is not None:
+        assembly.follow(surface)
         assembly.contact.begin()
     if assembly.trim is not None:
         assembly.trim.begin()
@@ -193,6 +199,7 @@ def _iterate(
             longest = min(longest, 0.5 / near)
         taken, moved = _search(assembly, system, result.surface, displacement, direction, longest)
         result.iterations.append(Iteration(residual, size, taken, direction.shift))
+        log.debug("%s, %d, residual %.0e", options.phase, len(result.iterations), residual)
         if moved is None and residual <= ROUNDING:
             return
         crawling = crawling + 1 if taken < CRAWL else 0

@@ -67,10 +67,10 @@ class PointSupports(ContactSet):
     tension : of the membrane.
     elements : of the sector.
 
-    Notes
-    -----
-    Its ``multipliers`` are its memory: 1 for asperities that are wet, 0 for others. One that the
-    membrane has met stays wet until it is torn off by more than the largest pull.
+    Attributes
+    ----------
+    wet : (k, 1) which asperities are wet: those that the membrane meets, and those that it has met
+        and not been torn off by more than the largest pull.
     """
 
     def __init__(
@@ -106,9 +106,9 @@ class PointSupports(ContactSet):
     def follow(self, surface: Surface) -> None:
         """Find the asperities anew in a mesh that has moved sideways."""
         assert isinstance(self.solid, (SphereLattice, Spheres))
-        wet = self.which[self.multipliers[:, 0] > 0.0]
+        memory = self.memory
         self._take(supports_of(self._scene, self.solid, self._ring.radius, surface))
-        self.multipliers = np.isin(self._which, wet).astype(float)
+        self.recall(memory)
 
     def _take(self, supports: Supports) -> None:
         assert isinstance(self.solid, (SphereLattice, Spheres))
@@ -124,25 +124,33 @@ class PointSupports(ContactSet):
             self._ring.radius / self._radius,
             0.5 * self._ring.pressure * self._radius / self._tension,
         )
-        self.multipliers = np.zeros(self._which.shape)
+        self.wet = np.zeros(self._which.shape, bool)
         self._before = np.full(self._which.shape, np.inf)
 
     def _sunk(self, points: Array) -> Array:
         x = self.table.values @ points[self.table.functions]
         return np.asarray(self._top - x[..., 2])
 
+    @property
+    def memory(self) -> Array:
+        """Numbers of the wet asperities."""
+        return np.asarray(self._which[self.wet], float)
+
+    def recall(self, memory: Array) -> None:
+        """Take the :attr:`memory` of another contact of the same membrane."""
+        self.wet = np.isin(self._which, memory)
+
     def hold(self, points: Array) -> None:
         """Remember which asperities a state wets."""
         depth, spots = self._sunk(points) / self._radius, self._spots
         steady = np.abs(depth - self._before).max(initial=0.0) <= STEADY
         self._before = depth
-        wet = held(depth, spots.touching, spots.lowest, (self.multipliers > 0.0) & steady)
-        self.multipliers = wet.astype(float)
+        self.wet = held(depth, spots.touching, spots.lowest, self.wet & steady)
 
     def touch(self, points: Array) -> Touch:
         """Gaps and forces for control points (count, 3)."""
         depth = self._sunk(points)
-        wet = (depth > self._spots.touching * self._radius) | (self.multipliers > 0.0)
+        wet = (depth > self._spots.touching * self._radius) | self.wet
         spots = self._spots.carried(depth / self._radius)
         force = np.where(wet, self._unit * spots.load, 0.0)
         up = np.broadcast_to([0.0, 0.0, 1.0], (*depth.shape, 3))

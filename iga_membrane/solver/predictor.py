@@ -3,6 +3,8 @@ pressed through the spheres it touches."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import Array
@@ -62,12 +64,11 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
     start, multipliers, before = scene.local_surface(), None, None
     if scene.predictor is not None:
         near = scene.predictor
-        before = first(near, Assembly(near), options)
+        before = first(near, Assembly(near), replace(options, phase="start"))
         near_start = before.surface
         if scene.start_from is not None:
             near_start = scene.start_from(before.surface)
         start = near_start
-        assembly.follow(near_start)
         if assembly.trim is not None:
             start = pressed(scene, assembly, near_start)
             assembly.keep_motion(near_start)

@@ -74,7 +74,7 @@ def test_an_asperity_that_was_met_stays_wet_until_it_is_torn_off(angle):
     points = scene.local_surface().points
     lower = points - [0.0, 0.0, 1e-3]
     contact.hold(lower)
-    wet = contact.multipliers > 0.0
+    wet = contact.wet
     assert wet.any()
     # just out of touch
     depth = -contact.touch(lower).at.gap
@@ -86,7 +86,7 @@ def test_an_asperity_that_was_met_stays_wet_until_it_is_torn_off(angle):
     assert ((pulled.pull > 0.0) == (wet & (angle < 180.0))).all()
     far = points + [0.0, 0.0, 1.0]
     contact.hold(far)
-    assert not contact.multipliers.any()
+    assert not contact.wet.any()
 
 
 def test_the_law_follows_from_the_mesh():

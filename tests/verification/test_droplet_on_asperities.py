@@ -72,7 +72,7 @@ def test_the_papers_droplet():
 
 
 def test_height_energy_and_forces_settle_with_the_mesh():
-    coarse, middle, fine = (rough(elements=n) for n in (38, 75, 125))
+    coarse, middle, fine = (rough(elements=n) for n in (48, 75, 125))
     for name, final in (("height", HEIGHT), ("energy", ENERGY), ("p_base", PRESSURE)):
         errors = [abs(s.measures[name] / final - 1.0) for s in (coarse, middle, fine)]
         assert errors[1] < 0.5 * errors[0], name

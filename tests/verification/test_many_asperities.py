@@ -49,7 +49,9 @@ def test_forces_on_every_asperity_balance_the_weight(spacing):
     assert middle["force"] == pytest.approx(solution.measures["p_base"] * spacing**2, rel=3e-2)
 
 
-@pytest.mark.parametrize(("spacing", "elements"), [(0.11, 150), (0.06, 270)])
+@pytest.mark.parametrize(
+    ("spacing", "elements"), [(0.11, 150), pytest.param(0.06, 270, marks=pytest.mark.slow)]
+)
 def test_point_supports_lower_the_droplet_as_resolved_spots_do(spacing, elements):
     coarse, fine = solved(spacing), solved(spacing, elements)
     assert (coarse.contact["law"], fine.contact["law"]) == ("point supports", "penalty")
