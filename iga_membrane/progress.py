@@ -42,7 +42,8 @@ def bar(text: str, total: float = 1.0) -> Iterator[Callable[[float], None]]:
         def iterated(phase: str, number: int, residual: float) -> None:
             drawn.update(task, description=f"{text}: {phase}, {number}, residual {residual:.0e}")
             if phase == "solve":  # of one load: the digits that are found tell how far it is
-                report(total * min(1.0, max(0.0, log10(residual) / log10(CONVERGED))))
+                digits = log10(min(max(residual, CONVERGED), 1.0))
+                report(total * digits / log10(CONVERGED))
 
         with _following(iterated):
             yield report

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Solid, Sphere
+from ..solids import Solid, Sphere, Spheres
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from ..surface.surface import Surface
@@ -264,10 +264,21 @@ def smallest_model(
     lateral : gravity along x and y.
     """
     sample = np.random.default_rng(0).uniform(-reach, reach, (400, 3)) * [1.0, 1.0, 0.1]
-    gap = solid.nearest(sample).gap
+    if isinstance(solid, Spheres):
+        # a place tells nothing of the angle there
+        near = solid.within(reach)
+        radii = solid.radius_of(near)
+        sample = solid.center_of(near) + 0.5 * radii[:, None] * [0.0, 0.0, 1.0]
+        kinds = np.column_stack([radii, solid.angle_of(near)])
+    at = solid.nearest(sample)
 
     def mirrored(image: Array) -> bool:
-        off = np.abs(solid.nearest(image).gap - gap).max(initial=0.0)
+        there = solid.nearest(image)
+        off = np.abs(there.gap - at.gap).max(initial=0.0)
+        if isinstance(solid, Spheres):
+            which = there.which
+            known = np.column_stack([solid.radius_of(which), solid.angle_of(which)])
+            off = max(off, np.abs(known - kinds).max(initial=0.0))
         return bool(off <= 1e-9 * reach)
 
     model: Model = "eighth" if mirrored(sample[:, [1, 0, 2]]) else "quarter"

@@ -113,9 +113,10 @@ def sessile_droplet(
     choice("solver.contact_line", contact_line, CONTACT_LINES)
     acceleration = _acceleration(gravity)
     bridges = asked_substrate is None and len(grains) == 2
-    origin, axes = _frame(substrate, free=asked_substrate is None)
     if bridges:
         origin, axes = grains[0].center, axes_between(grains)
+    else:
+        origin, axes = _frame(substrate, free=asked_substrate is None)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
@@ -262,7 +263,8 @@ def _with_start(scene: Scene, terms: Sequence[Term], built: Foot) -> Scene:
         ramp = Ramp("substrate.contact_angle", (good, least), started, only=True)
         return replace(scene, ramp=ramp)
     # another angle may have a better start; its wet set may be another one, too
-    ramp = Ramp("substrate.contact_angle", (least + AROUND, least), started)
+    easier = min(least + AROUND, 0.5 * (least + 180.0))
+    ramp = Ramp("substrate.contact_angle", (easier, least), started)
     return replace(started(least), ramp=ramp)
 
 

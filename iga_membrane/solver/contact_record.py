@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from ..scenes.scene import Scene
-from ..solids import Plane, SphereLattice, Spheres
+from ..solids import SphereLattice, Spheres
 from ..terms import LineTerm, PlaneContactLine, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line, vertical_forces
-from .footing import footing
+from .footing import footing, touches_base
 from .forces import pull_on_sphere, sphere_lines
 from .newton import NewtonResult
 
@@ -108,5 +108,5 @@ def _footing(
         "max_penetration": checked.penetration * on.length * scale.length if checked else None,
         "deepest_point": _deepest(scene, checked),
         "support_force": -float(feet.total[2]) * scale.force,
-        "touches_base": bool((feet.which < 0).any()) and not isinstance(scene.substrate, Plane),
+        "touches_base": touches_base(scene, assembly, result.surface, feet),
     }

@@ -241,6 +241,26 @@ def engulfed(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     return _in_sector(scene, assembly, surface, wrong)
 
 
+def touches_base(scene: Scene, assembly: Assembly, surface: Surface, feet: Footing) -> bool:
+    """Whether a membrane on asperities has come down to the plane under them.
+
+    Parameters
+    ----------
+    feet : what carries it. Where it passes through asperities, or meets them at one place each, it
+        does not notice the plane, and its height counts.
+    """
+    substrate = scene.substrate
+    base = None if substrate is None else getattr(scene.units.local_solid(substrate), "base", None)
+    if base is None:
+        return False
+    x = assembly.table.values @ surface.points[assembly.table.functions]
+    if assembly.trim is not None:
+        x = x[assembly.trim.outside(surface.points).share > 0]
+    elif not isinstance(assembly.contact, PointSupports):
+        return bool((feet.which < 0).any())
+    return bool((x[..., 2] <= base).any())
+
+
 def unsupported(scene: Scene, assembly: Assembly, surface: Surface) -> int:
     """How many spheres of the sector that are no point supports a membrane on point supports has
     met."""

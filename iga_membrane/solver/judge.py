@@ -14,7 +14,7 @@ from ..terms import Centroid, Contact
 from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line
-from .footing import contacts, engulfed, unsupported
+from .footing import contacts, engulfed, touches_base, unsupported
 from .measures import sphere_of
 from .stability import Stability
 from .status import Status
@@ -137,9 +137,7 @@ def contact_objection(
 ) -> tuple[Status, str | None, str] | None:
     """What makes a converged state on a contact area no success, or None."""
     feet = contacts(scene, assembly, surface, assembly.density(multipliers))
-    lines = assembly.trim is not None
-    under = _under_base(scene, assembly, surface) if lines else (feet.which < 0).any()
-    if under and not isinstance(scene.substrate, Plane):
+    if touches_base(scene, assembly, surface, feet):
         return (
             Status.TOPOLOGY_CHANGE,
             "touches_base",
@@ -187,19 +185,6 @@ def contact_objection(
                 f"the droplet does not touch particle[{lost[0]}] any more: bring it nearer",
             )
     return None
-
-
-def _under_base(scene: Scene, assembly: Assembly, surface: Surface) -> bool:
-    """Whether a membrane that passes through spheres has come down to the plane under them."""
-    trim = assembly.trim
-    assert trim is not None
-    assert scene.substrate is not None
-    base = getattr(scene.units.local_solid(scene.substrate), "base", None)
-    if base is None:
-        return False
-    outside = trim.outside(surface.points)
-    lowest = assembly.table.values @ surface.points[assembly.table.functions]
-    return bool((lowest[outside.share > 0][..., 2] <= base).any())
 
 
 NARROW = 0.02, 0.05

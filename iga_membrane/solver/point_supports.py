@@ -125,7 +125,7 @@ class PointSupports(ContactSet):
             0.5 * self._ring.pressure * self._radius / self._tension,
         )
         self.wet = np.zeros(self._which.shape, bool)
-        self._before = np.full(self._which.shape, np.inf)
+        self._before = np.full(self._which.shape, np.nan)
 
     def _sunk(self, points: Array) -> Array:
         x = self.table.values @ points[self.table.functions]
@@ -139,11 +139,13 @@ class PointSupports(ContactSet):
     def recall(self, memory: Array) -> None:
         """Take the :attr:`memory` of another contact of the same membrane."""
         self.wet = np.isin(self._which, memory)
+        self._before = np.full(self._which.shape, np.nan)
 
     def hold(self, points: Array) -> None:
         """Remember which asperities a state wets."""
         depth, spots = self._sunk(points) / self._radius, self._spots
-        steady = np.abs(depth - self._before).max(initial=0.0) <= STEADY
+        # after a recall nothing is known of the state before, which was steady
+        steady = not (np.abs(depth - self._before) > STEADY).any()
         self._before = depth
         self.wet = held(depth, spots.touching, spots.lowest, self.wet & steady)
 

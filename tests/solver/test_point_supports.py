@@ -84,6 +84,11 @@ def test_an_asperity_that_was_met_stays_wet_until_it_is_torn_off(angle):
     pulled = contact.touch(apart)
     assert not (pulled.traction > 0.0).any()
     assert ((pulled.pull > 0.0) == (wet & (angle < 180.0))).all()
+    # also in the next solve
+    recalled = Assembly(scene).contact
+    recalled.recall(contact.memory)
+    recalled.hold(lower + [0.0, 0.0, 1e-9])
+    assert (recalled.wet == wet).all()
     far = points + [0.0, 0.0, 1.0]
     contact.hold(far)
     assert not contact.wet.any()

@@ -162,3 +162,39 @@ def test_irregular_asperities(spacing, seed):
     assert (vectors[:, 2] < 0).all()
     assert vectors.sum(axis=0) == pytest.approx([0, 0, -UNIT_VOLUME], abs=1e-3 * UNIT_VOLUME)
     assert 0.0 < lowered(solution) < 0.1 * spacing
+
+
+def test_models_see_the_contact_angles_of_a_list():
+    """Mirror planes of the places only are none of the droplet's."""
+    x, y = (0.1 * k.ravel() for k in np.meshgrid(*[np.arange(-9, 10)] * 2))
+    centers = np.column_stack([x, y, np.full(len(x), -0.02)])
+
+    def model(angles):
+        spheres = iga.Spheres(angles, centers, 0.02)
+        return iga.sessile_droplet(spheres, volume=UNIT_VOLUME, gravity=1.0).sector.model
+
+    assert model(150.0) == "eighth"
+    assert model(np.where(np.abs(x) > 0.05, 145.0, 175.0)) == "quarter"
+    assert model(np.where(x > 0.05, 145.0, 175.0)) == "half"
+    assert model(np.where((x > 0.05) & (y > 0.05), 145.0, 175.0)) == "full"
+
+
+@pytest.mark.parametrize(("angle", "base"), [(180.0, -0.003), (150.0, -0.004)])
+def test_liquid_that_comes_down_to_the_base_is_named(angle, base):
+    substrate = iga.SphereLattice(angle, 0.02, 0.11, base=base)
+    scene = iga.sessile_droplet(substrate, volume=UNIT_VOLUME, gravity=1.0)
+    solution = iga.solve(scene, on_fail="return")
+    assert (solution.status.name, solution.kind) == ("TOPOLOGY_CHANGE", "touches_base")
+    assert solution.contact["touches_base"]
+    assert solution.contact["law"] == "point supports"
+
+
+@pytest.mark.parametrize("angle", [150.0, 170.0, 178.0])
+def test_a_droplet_goes_on_from_its_state_file(angle, tmp_path):
+    scene = scene_of(0.1, angle=angle)
+    solved_once = iga.solve(scene)
+    solved_once.save(tmp_path / "state.npz")
+    again = iga.solve(scene, iga.SolverOptions(start=tmp_path / "state.npz"))
+    assert again.newton_iterations <= 2
+    assert again.measures["height"] == pytest.approx(solved_once.measures["height"], rel=1e-9)
+    assert again.contact["wet_solids"] == solved_once.contact["wet_solids"]
