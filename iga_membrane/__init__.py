@@ -43,6 +43,7 @@ _HOME = {
     "solver.state": ("load",),
     "solver.trace": ("Path", "trace"),
     "solver.contact_line": ("contact_line",),
+    "solver.derivatives": ("Derivatives", "check_derivatives"),
     "analysis.convergence": ("Study", "convergence_study"),
     "analysis.critical": ("Crossing", "critical_value"),
     "analysis.pull_off": ("PullOff", "pull_off"),

@@ -34,10 +34,12 @@ def check_particles(particles: Sequence[Sphere]) -> tuple[Sphere, ...]:
             )
         for j, other in enumerate(particles[:i]):
             away = float(np.linalg.norm(np.subtract(each.center, other.center)))
-            if away < each.radius + other.radius:
+            depth = each.radius + other.radius - away
+            if depth > 0.0:
                 raise SceneError(
                     f"particle[{j}], particle[{i}]: their centres are {away:g} apart, less than "
-                    f"the sum of their radii {each.radius + other.radius:g}: they overlap"
+                    f"the sum of their radii {each.radius + other.radius:g}: they overlap by "
+                    f"{depth:.3g}"
                 )
     return tuple(particles)
 

@@ -16,7 +16,7 @@ from ..errors import SceneError
 from ..solids import Plane, Sphere
 from ..splines.quadrature import gauss
 from ..surface.ring import axisymmetric, ring_space
-from ..surface.supports import Sliding
+from ..surface.supports import Sector, Sliding
 from ..terms import SphereContactLine
 from .question import Foot, Question, sector_of
 
@@ -80,7 +80,11 @@ def bridge(parts: Question, particles: Sequence[Sphere]) -> Foot:
     ]
     supports = [Sliding(line.edge, line.sphere) for line in lines]
     surface = start.moved(scale.to_world(start.points))
-    return Foot(surface, sector_of(mesh, parts.bond), mesh, lines, supports)
+    # it may give way sideways, so that no smaller model than half tells whether it is stable
+    sector = sector_of(mesh, parts.bond)
+    if mesh.model is None and sector.model != "full":
+        sector = Sector("full" if parts.bond[0] else "half")
+    return Foot(surface, sector, mesh, lines, supports)
 
 
 def _barrel(

@@ -51,7 +51,9 @@ def film_between_rings(
     half_height = number("rings.half_height", half_height, above=0.0)
     if volume is not None and pressure is not None:
         raise SceneError("rings.volume, rings.pressure: both are prescribed; give one of them")
-    model = mesh.model or "eighth"
+    # a catenoid collapses round its axis first; a bridge may give way sideways
+    film = volume is None and pressure is None
+    model = mesh.model or ("eighth" if film else "half")
     terms: list[Term] = [SurfaceTension(liquid.surface_tension)]
     bulge = 0.0
     if volume is not None:

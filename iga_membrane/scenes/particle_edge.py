@@ -70,8 +70,9 @@ def ending_on(meridian: Meridian, particle: Sphere, space: Space) -> Surface:
 def seat_of(meridian: Meridian, particle: Sphere) -> tuple[Array, Array]:
     """Point of a droplet that is nearest to a particle, and the direction into the liquid there."""
     k, (x, y, _) = nearest(meridian, particle), particle.center
-    distance = float(np.hypot(x, y))
-    aside = np.array([x, y]) / distance if distance else np.array([1.0, 0.0])
+    if x == y == 0.0:
+        return np.array([0.0, 0.0, meridian.z[k]]), np.array([0.0, 0.0, -1.0])
+    aside = np.array([x, y]) / np.hypot(x, y)
     seat = np.array([*(meridian.r[k] * aside), meridian.z[k]])
     across, up = meridian.normal[k]
     return seat, -np.array([*(across * aside), up])

@@ -124,7 +124,8 @@ def _on_a_plane(parts: Question) -> Foot:
             raise SceneError(
                 f"particle[{i}].center = {list(given.center)}: "
                 f"{each.center[2] * scale.length:g} above the plane, less than its radius "
-                f"{given.radius:g}: it reaches into the substrate"
+                f"{given.radius:g}: it reaches {(each.radius - each.center[2]) * scale.length:.3g} "
+                "into the substrate"
             )
     model = mirrored_model(local, sector_of(mesh, parts.bond).model)
     if mesh.model is not None and MODELS.index(mesh.model) > MODELS.index(model):
@@ -132,7 +133,9 @@ def _on_a_plane(parts: Question) -> Foot:
             f'discretization.model = "{mesh.model}": the particles do not lie in its mirror '
             f'planes; "{model}" is the smallest model here'
         )
-    sector = Sector(mesh.model or model)
+    # away from a particle that presses on its top a droplet may slip along the plane
+    slips = model in ("quarter", "eighth") and "x" not in parts.held
+    sector = Sector(mesh.model or ("half" if slips else model))
     rest = rest_of(parts.substrate, parts.liquid, scale, parts.down)
     if parts.contact_line == "conforming":
         return _ending_on(parts, local[0], sector, mesh, rest)

@@ -185,5 +185,7 @@ def nearest(meridian: Meridian, particle: Sphere) -> int:
 def place_on(meridian: Meridian, particle: Sphere) -> complex:
     """Conformal place of the point of a droplet that is nearest to a particle, 0 at the top."""
     x, y, _ = particle.center
+    if x == y == 0.0:
+        return 0j  # the meridian ends beside it
     size = float(meridian.log[0] - meridian.log[nearest(meridian, particle)])
     return complex(np.exp(size + 1j * np.arctan2(y, x)))

@@ -16,6 +16,7 @@ from ..terms import Centroid, Volume
 from .assembly import Assembly
 from .audit import Audit, audit
 from .contact_record import contact_record
+from .crossing import crossing
 from .forces import ParticleForces, particle_forces
 from .inverse_root import SingularMatrix
 from .judge import contact_objection, judge, overload, reaches_boundary, rolling, too_soft
@@ -66,6 +67,12 @@ def conclude(
             objection = contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
+    if status is Status.CONVERGED_STABLE and assembly.contact is None and assembly.trim is None:
+        place = crossing(surface)
+        if place is not None:
+            status, kind = Status.TOPOLOGY_CHANGE, "self-contact"
+            x, y, z = scene.units.to_world(place)
+            message = f"the membrane meets itself at ({x:.4g}, {y:.4g}, {z:.4g})"
     sunk = too_soft(scene, assembly, multipliers)
     if sunk is not None and status is not Status.INTERRUPTED:
         status, message = sunk

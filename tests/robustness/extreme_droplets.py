@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import round_cell
 from scipy.optimize import brentq
 
 import iga_membrane as iga
@@ -171,3 +172,78 @@ def carries(radius, pitch, bond, **_):
     share = drop_on_plane(bond, 180.0)["p_base"] / carried(radius, (pitch * radius) ** 2)
     wide = drop_on_plane(bond, 180.0)["contact_radius"] > pitch * radius
     return True if share < 0.7 and wide else False if share > 1.5 else None
+
+
+# Contact lines on asperities
+
+
+def lined_cell(angle, size, part, length, tension):
+    most = round_cell.largest_pressure(angle, 0.5 * size, 1.0)
+    return iga.asperity_cell(
+        iga.Sphere(angle, length, (0.0, 0.0, -length)),
+        size=size * length,
+        pressure=part * most * tension / length,
+        shape="circle",
+        liquid=iga.Liquid(tension),
+        contact_line="trimmed",
+    )
+
+
+def lined_cell_oracle(result, angle, size, part, length, tension):
+    most = round_cell.largest_pressure(angle, 0.5 * size, 1.0)
+    exact = round_cell.exact(angle, part * most, 0.5 * size, 1.0)
+    return {
+        "phi_deg": exact["phi_deg"],
+        "contact_radius": exact["contact_radius"] * length,
+        "F_sphere": exact["F_sphere"] * length * tension,
+        "F_press": exact["F_press"] * length * tension,
+    }
+
+
+def lines_carry(angle, radius, pitch, bond, **_):
+    """The same as ``carries`` with the most that contact lines do."""
+    cell = pitch * radius / np.sqrt(np.pi)
+    flat = drop_on_plane(bond, 180.0)
+    share = flat["p_base"] / round_cell.largest_pressure(angle, cell, radius)
+    wide = flat["contact_radius"] > 2.0 * pitch * radius
+    return True if share < 0.7 and wide else False if share > 1.5 else None
+
+
+def lined_lattice(angle, radius, pitch, bond, length, tension, particles=(), **options):
+    return iga.sessile_droplet(
+        iga.SphereLattice(angle, radius * length, pitch * radius * length, **options),
+        volume=UNIT * length**3,
+        liquid=iga.Liquid(tension, 1000.0),
+        gravity=bond * tension / (1000.0 * length**2),
+        particles=particles,
+    )
+
+
+def lined_defects(result, angle, radius, bond, length, tension, pulls=(0.0, 0.0, 0.0), **_):
+    """Forces on the asperities sum to the weight and what pulls beside it; none is drawn up harder
+    than a line can."""
+    unit = length * tension
+    weight = np.array([0.0, 0.0, UNIT * bond * unit])
+    forces = np.array([each["force_vector"] for each in result["contact"]["asperities"]])
+    pull = 2.0 * np.pi * radius * np.cos(0.5 * np.radians(angle)) ** 2 * unit
+    missing = forces.sum(axis=0) + weight + pulls - result["contact"]["hold_force"]
+    return {
+        "weight": np.linalg.norm(missing) / weight[2],
+        "pull": max(0.0, forces[:, 2].max() / pull - 1.0),
+    }
+
+
+def whole_system(angle, radius, pitch, bond, grain, size, shift, length, tension):
+    """A particle on top of a droplet on asperities."""
+    top = drop_on_plane(bond, 180.0)["height"]
+    center = (0.0, 0.0, (top + shift * size) * length)
+    half = 0.5 * pitch * radius * length
+    particle = iga.Sphere(grain, size * length, center, 1000.0)
+    return lined_lattice(
+        angle, radius, pitch, bond, length, tension, [particle], offset=(half, half)
+    )
+
+
+def whole_defects(result, **parameters):
+    (force,) = result["forces"]
+    return lined_defects(result, pulls=np.subtract(force["F_e"], force["F_G"]), **parameters)

@@ -37,6 +37,21 @@ def bridge_oracle(result, half_height, length, tension):
     return {"neck_radius": length, "pressure": tension / length}
 
 
+def swollen(half_height, ratio, length, tension):
+    """So many times the cylinder's volume."""
+    return ringed(
+        half_height, length, tension, volume=2.0 * np.pi * half_height * ratio * length**3
+    )
+
+
+def swollen_exists(half_height, ratio, **_):
+    """A bridge gives way sideways once it leaves its rings within their planes, about where its
+    profile is a half circle from ring to ring."""
+    h = half_height
+    half_circle = 1.0 + 0.5 * np.pi * h + 2.0 * h * h / 3.0
+    return False if ratio > 1.5 * half_circle else True if ratio < half_circle / 1.5 else None
+
+
 def pinned(length, tension, **held_by):
     return iga.liquid_sheet(
         size=2.0 * length, boundary="circle", liquid=iga.Liquid(tension), **held_by

@@ -107,3 +107,13 @@ def test_what_bridges_cannot_do_is_refused():
         iga.sessile_droplet(None, volume=1.0, particles=PAIR, hold="xyz")
     with pytest.raises(iga.SceneError, match=r'"trimmed": between two particles'):
         iga.sessile_droplet(None, volume=1.0, particles=PAIR, contact_line="trimmed")
+
+
+def test_round_bridge_that_gives_way_sideways_is_no_success():
+    """Two spheres near each other hold less liquid round their gap than beside it."""
+    pair = [iga.Sphere(90.0, 0.8, (0.0, 0.0, z)) for z in (-1.05, 1.05)]
+    assert iga.solve(bridge(pair, model="eighth", elements=8)).success
+    found = iga.solve(bridge(pair, elements=8), on_fail="return")
+    assert found.scene.sector.model == "half"
+    assert found.status is iga.Status.CONVERGED_SADDLE
+    assert found.lambda_min < -0.1

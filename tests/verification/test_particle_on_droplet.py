@@ -88,9 +88,12 @@ def test_model_with_particle_beside_its_mirror_plane_is_refused():
     [
         (
             [(1.0, 0.0, 0.7), (1.1, 0.2, 0.7)],
-            r"less than the sum of their radii 0\.4: they overlap",
+            r"particle\[0\], particle\[1\].*sum of their radii 0\.4: they overlap by 0\.176",
         ),
-        ([(0.9, 0.0, 0.15)], r"0\.15 above the plane.*reaches into the substrate"),
+        (
+            [(0.9, 0.0, 0.15)],
+            r"particle\[0\].*0\.15 above the plane.*reaches 0\.05 into the substrate",
+        ),
         ([(2.0, 0.0, 0.7)], r"particle\[0\]\.center.*farther than a meniscus reaches"),
     ],
 )
@@ -123,3 +126,37 @@ center = {list(given.center)}
     np.testing.assert_array_equal(read.forces[0].effective, asked.forces[0].effective)
     assert read.hold_force == asked.hold_force
     assert dict(read.measures) == dict(asked.measures)
+
+
+def on_top(height, *, hold="none", line="auto"):
+    return iga.sessile_droplet(
+        PLANE,
+        volume=UNIT_VOLUME,
+        gravity=BOND,
+        hold=hold,
+        particles=[iga.Sphere(90.0, 0.2, (0.0, 0.0, height))],
+        contact_line=line,
+    )
+
+
+def test_particle_on_top_carries_what_a_line_can_and_then_lets_go():
+    """P17: up to ``2 pi gamma r cos^2(45 degrees)``; without a line there is no force at all."""
+    passed, ended = (iga.solve(on_top(1.9, hold="xy", line=way)) for way in ("auto", "conforming"))
+    force = passed.forces[0].contact_line[2]
+    assert ended.forces[0].contact_line[2] == pytest.approx(force, rel=1e-5)
+    assert 0.95 < -force / (0.2 * np.pi) < 1.0
+    lost = iga.solve(on_top(2.0, hold="xy"), on_fail="return")
+    assert (lost.status, lost.kind) == (iga.Status.TOPOLOGY_CHANGE, "detached")
+    assert not lost.forces[0].contact_line.any()
+
+
+def test_droplet_slips_from_under_a_particle_that_presses_on_its_top():
+    """L10: the symmetric state is an equilibrium that sliding leaves; held it is stable."""
+    slips = iga.solve(on_top(1.3, line="conforming"), on_fail="return")
+    assert slips.scene.sector.model == "half"
+    assert (slips.status, slips.index) == (iga.Status.CONVERGED_SADDLE, 1)
+    assert slips.lambda_min < 0
+    held = iga.solve(on_top(1.3, hold="xy", line="conforming"))
+    assert held.scene.sector.model == "eighth"
+    assert pull(held)[2] == pytest.approx(pull(slips)[2], rel=1e-5)
+    assert iga.solve(on_top(1.9, line="conforming")).success

@@ -58,7 +58,9 @@ def test_suction_is_pressure_upside_down():
     assert up["A_LG"] == pytest.approx(down["A_LG"], rel=1e-12)
 
 
-@pytest.mark.parametrize(("degree", "elements"), [(2, 8), (3, 8), (4, 20)])
+@pytest.mark.parametrize(
+    ("degree", "elements"), [(2, 8), (3, 8), pytest.param(4, 20, marks=pytest.mark.slow)]
+)
 def test_no_cap_above_the_pressure_of_the_hemisphere(degree, elements):
     scene = cap(pressure=2.1, degree=degree, elements=elements)
     solution = iga.solve(scene, on_fail="return")
