@@ -52,6 +52,12 @@ def at_polar(x: np.ndarray, height: float, polar: float) -> np.ndarray:
     return x[np.abs(seen - polar).argmin()]
 
 
+def at_rest(x: np.ndarray, height: float, radius: float) -> np.ndarray:
+    """Place beside the droplet of a particle on the plane, its centre on the profile."""
+    low = x[x[:, 1] < 0.5 * height]
+    return np.array([low[np.abs(low[:, 1] - radius).argmin(), 0], radius])
+
+
 def converge() -> None:
     x, height = profile(0.5)
     place = at_polar(x, height, 95.0)
@@ -160,14 +166,24 @@ def pulled() -> None:
 HEAD = "| Bo | angle | radius | place | status | F_x | F_z | balance x | z | iterations | CPU s |"
 
 
-def row(angle: float, radius: float, place: np.ndarray, bond: float, name: str) -> bool:
-    start = process_time()
-    found = iga.solve(on_droplet(angle, radius, place, bond), LIMIT, on_fail="return")
+def said(found: iga.Solution) -> str:
+    """Status with its kind and bracket."""
+    words = [found.status.name, found.kind or ""]
+    if found.bracket is not None:
+        words.append(f"{found.bracket.parameter} {found.bracket.lo:.4g}, {found.bracket.hi:.4g}")
+    return " ".join(word for word in words if word)
+
+
+def row(
+    angle: float, radius: float, place: np.ndarray, bond: float, name: str, limit: float = 120.0
+) -> bool:
+    start, options = process_time(), iga.SolverOptions(max_cpu_s=limit)
+    found = iga.solve(on_droplet(angle, radius, place, bond), options, on_fail="return")
     force, size = pull(found), max(bond * VOLUME, 1.0)
     sideways = abs(found.hold_force[0] - force[0]) / size
     upwards = abs(found.contact["support_force"] - force[2] - bond * VOLUME) / size
     print(
-        f"| {bond:g} | {angle:g} | {radius:g} | {name} | {found.kind or found.status.name} | "
+        f"| {bond:g} | {angle:g} | {radius:g} | {name} | {said(found)} | "
         f"{force[0]:.5f} | {force[2]:.5f} | {sideways:.0e} | {upwards:.0e} | "
         f"{found.newton_iterations} | {process_time() - start:.1f} |",
         flush=True,
@@ -182,24 +198,25 @@ def resting() -> None:
     solved = []
     for bond in (0.0, 0.25, 1.0):
         x, height = profile(bond)
-        low = x[x[:, 1] < 0.5 * height]
         for angle in (60.0, 90.0, 120.0):
             for radius in (0.1, 0.2, 0.3):
-                place = np.array([low[np.abs(low[:, 1] - radius).argmin(), 0], radius])
+                place = at_rest(x, height, radius)
                 solved.append(row(angle, radius, place, bond, "resting"))
     print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
 
 
 def grid() -> None:
+    """A particle that would cut the plane rests on it."""
     print(HEAD, "|---" * 11 + "|", sep="\n")
     solved = []
     x, height = profile(0.5)
     for angle in (15.0, 50.0, 90.0, 130.0, 165.0):
         for radius in (0.05, 0.2, 0.5):
-            for polar in (20.0, 65.0, 110.0, 140.0):
-                place = at_polar(x, height, polar)
-                if place[1] >= radius:
-                    solved.append(row(angle, radius, place, 0.5, f"{polar:g}"))
+            for polar in (20.0, 65.0, 95.0, 120.0):
+                place, name = at_polar(x, height, polar), f"{polar:g}"
+                if place[1] < radius:
+                    place, name = at_rest(x, height, radius), "resting"
+                solved.append(row(angle, radius, place, 0.5, name, limit=60.0))
     print(f"\n{sum(solved)} of {len(solved)} CONVERGED_STABLE")
 
 

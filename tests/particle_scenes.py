@@ -24,7 +24,7 @@ def place(polar):
     return np.array([r[nearest], 0.0, z[nearest]]), np.array([sideways, 0.0, normal[nearest, 2]])
 
 
-def scene(*particles, hold="x", line="auto", **mesh):
+def scene(*particles, hold="x", line="trimmed", **mesh):
     return iga.sessile_droplet(
         PLANE,
         volume=UNIT_VOLUME,
@@ -41,7 +41,7 @@ def particle(polar=95.0, angle=90.0, radius=0.2, *, shift=(0.0, 0.0, 0.0)):
 
 
 @cache
-def solved(polar=95.0, angle=90.0, radius=0.2, *, line="auto", **mesh):
+def solved(polar=95.0, angle=90.0, radius=0.2, *, line="trimmed", **mesh):
     solution = iga.solve(scene(particle(polar, angle, radius), line=line, **mesh))
     assert solution.success, solution.message
     return solution

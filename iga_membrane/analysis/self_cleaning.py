@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..checks import number, record
 from ..errors import SceneError
 from ..scenes.scene import Scene
-from ..solids import Plane
+from ..solids import Plane, SphereLattice, Spheres
 from ..solver.forces import ParticleForces
 from ..solver.options import SolverOptions
 from ..solver.solution import Solution
@@ -28,7 +28,8 @@ class Verdict:
     Attributes
     ----------
     answer : "lifted", "dragged" or "stays".
-    normal, tangential : force of the liquid out of the substrate, and size of that along it.
+    normal, tangential : force of the liquid out of the substrate (asperities: along z), and size of
+        that along it.
     weight : part of the weight that presses the particle on the substrate.
     slide : tangential force, that of the weight included, over the force that presses the particle
         on the substrate: it is dragged above the coefficient of friction; inf where nothing presses
@@ -76,15 +77,17 @@ def self_cleaning(
     Raises
     ------
     SceneError
-        If the scene has no particle, or a droplet stands on no plane.
+        If the scene has no particle, or a droplet stands on neither a plane nor asperities.
     SolveError
         If there is no stable equilibrium.
     """
     record("scene", scene, Scene)
     friction = number("friction", friction, least=0.0)
-    if scene.kind == "sessile_droplet" and not isinstance(scene.substrate, Plane):
+    rough = isinstance(scene.substrate, (SphereLattice, Spheres))
+    if scene.kind == "sessile_droplet" and not (rough or isinstance(scene.substrate, Plane)):
         raise SceneError(
-            "substrate: particles are cleaned from a plane, or lifted by a sheet; give a Plane"
+            "substrate: particles are cleaned from a plane or from asperities, or lifted by a "
+            "sheet; give a Plane, a SphereLattice or Spheres"
         )
     if scene.free_particles is not None:
         scene = scene.free_particles.scene_at(np.zeros(len(scene.free_particles.which)))

@@ -18,7 +18,7 @@ from ..splines.quadrature import gauss
 from ..surface.ring import axisymmetric, ring_space
 from ..surface.supports import Sector, Sliding
 from ..terms import SphereContactLine
-from .foot import Foot, Question, sector_of
+from .question import Foot, Question, sector_of
 
 CLOSE = 0.5
 """Gap between two particles over a droplet's length across which its bridge is easily solved."""

@@ -22,10 +22,10 @@ from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
-from .foot import adhesion
 from .liquid import MODELS, Discretization, Liquid, Mesh, space_name, with_defaults
 from .scene import Ramp, Scene
 from .start import gathered
+from .whole_foot import adhesion
 
 SHAPES = ("square", "circle")
 SUNK = 0.01

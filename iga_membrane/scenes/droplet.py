@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..checks import choice, number, record, vector
 from ..errors import SceneError
-from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids import Plane, Solid, Sphere
 from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import (
@@ -25,23 +25,18 @@ from ..terms import (
     TrimmedContactLine,
     Volume,
 )
+from .approach import from_alone, from_another_angle
 from .beside import check_particles
 from .bridge import axes_between, bridge, moved_apart, room_between
-from .foot import (
-    CONTACT_LINES,
-    PREDICTABLE,
-    Foot,
-    Question,
-    foot_of,
-    rim_radius,
-    with_angle,
-    with_rim,
-)
+from .description import described_droplet
+from .foot import CONTACT_LINES, foot_of
 from .free import at_displacement, frame_of, pulled_by, seat_of
 from .liquid import Discretization, Liquid, with_defaults
 from .moving import check_fixed, fixed, moving
-from .particle_foot import with_particles
-from .scene import FreeEdge, Ramp, Scene, described_particle
+from .particle_foot import discretizations, with_particles
+from .question import Question
+from .scene import FreeEdge, Ramp, Scene
+from .smooth_foot import rim_radius, with_rim
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
 HOLDS = ("none", "x", "xy", "xyz")
@@ -88,9 +83,8 @@ def sessile_droplet(
     contact_line : "conforming", the membrane ends on it (planes, spheres, one particle beside a
         plane); "trimmed", it passes through the sphere, the asperities or the particles;
         "adhesion", it lies on asperities that attract it, for angles near 180 degrees; "auto"
-        chooses.
-    particles : spheres on its surface, with contact angles, densities and motions; the membrane
-        passes through them, or ends on one.
+        chooses: on one fixed particle the membrane ends, and where that fails passes through it.
+    particles : spheres on its surface, with contact angles, densities and motions.
     membrane : the paper's formulation, with its own penalty, instead of a contact line as the
         membrane's edge; on a plane, below 180 degrees.
 
@@ -111,6 +105,7 @@ def sessile_droplet(
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
+    contact_line, *others = discretizations(asked_substrate, grains, contact_line)
     acceleration = _acceleration(gravity)
     bridges = asked_substrate is None and len(grains) == 2
     if bridges:
@@ -178,7 +173,7 @@ def sessile_droplet(
     has_way = isinstance(substrate, Sphere) or (
         isinstance(substrate, Plane) and substrate.contact_angle < 180.0
     )
-    described = _describe(asked_substrate, volume, liquid, acceleration, hold, grains)
+    described = described_droplet(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
     if bridges and (near := -room_between(grains, length)) < 0.0:
 
@@ -225,13 +220,15 @@ def sessile_droplet(
         else:
             # it must not roll away from its particles
             bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
-            alone = _with_start(replace(scene, particles=()), bare, built.alone)
-        scene = _with_particles(replace(scene, start_from=built.start_from), alone)
+            alone = from_another_angle(replace(scene, particles=()), bare, built.alone)
+        other = (lambda: again(contact_line=others[0])) if others else None
+        scene = replace(scene, start_from=built.start_from, otherwise=other)
+        scene = from_alone(scene, alone)
         assert isinstance(line, (TrimmedContactLine, SphereContactLine))
         toward = np.atleast_2d(np.array(line.toward))
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if built.predictor:
-        return _with_start(scene, terms, built)
+        return from_another_angle(scene, terms, built)
     if not built.tangent:
         return scene
 
@@ -243,68 +240,6 @@ def sessile_droplet(
         return again(substrate=replace(substrate, contact_angle=angle))
 
     return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, below))
-
-
-def _with_start(scene: Scene, terms: Sequence[Term], built: Foot) -> Scene:
-    """A scene with contact lines on asperities, and the way to it from an angle where its start is
-    good."""
-    solid = scene.substrate
-    assert solid is not None
-
-    def started(angle: float) -> Scene:
-        """The scene at contact angles of at least ``angle``."""
-        raised = with_angle(solid, angle)
-        line = replace(built.terms[0], solid=raised)  # type: ignore[type-var]
-        near = replace(scene, terms=[*terms, *built.predictor], ramp=None)
-        return replace(scene, terms=[*terms, line], substrate=raised, ramp=None, predictor=near)
-
-    least, good = float(np.min(solid.contact_angle)), PREDICTABLE[0]
-    if least < good:
-        ramp = Ramp("substrate.contact_angle", (good, least), started, only=True)
-        return replace(scene, ramp=ramp)
-    # another angle may have a better start; its wet set may be another one, too
-    easier = min(least + AROUND, 0.5 * (least + 180.0))
-    ramp = Ramp("substrate.contact_angle", (easier, least), started)
-    return replace(started(least), ramp=ramp)
-
-
-def _with_particles(scene: Scene, alone: Scene) -> Scene:
-    """A droplet whose membrane passes through particles: it starts from the droplet alone, and if
-    that fails from particles at easier angles."""
-    angles = np.array([each.contact_angle for each in scene.particles])
-    easy = np.where((angles < EASY[0]) | (angles > EASY[1]), np.clip(angles, *EASY), EASIEST)
-    lead = int(np.abs(angles - easy).argmax())
-
-    def at(angle: float) -> Scene:
-        """All angles on the way from the easy ones, as far as that of one particle."""
-        way = angles[lead] - easy[lead]
-        turned = easy + (angle - easy[lead]) / way * (angles - easy) if way else angles
-
-        def through(term: Term) -> Term:
-            if isinstance(term, SphereContactLine):
-                return replace(term, sphere=replace(term.sphere, contact_angle=float(turned[0])))
-            if not isinstance(term, TrimmedContactLine):
-                return term
-            assert isinstance(term.solid, Spheres)
-            every = np.array(term.solid.contact_angle)
-            every[len(every) - len(turned) :] = turned
-            return replace(term, solid=replace(term.solid, contact_angle=every))
-
-        return replace(scene, terms=[through(t) for t in scene.terms], ramp=None, predictor=alone)
-
-    values = float(easy[lead]), float(angles[lead])
-    ramp = Ramp(f"particle[{lead}].contact_angle", values, at)
-    return replace(at(values[1]), ramp=ramp if values[0] != values[1] else None)
-
-
-EASY = 60.0, 130.0
-"""Contact angles of particles, in degrees, between which their menisci are good starts."""
-EASIEST = 90.0
-"""The angle from which a solve between them is approached if its own start fails."""
-
-
-AROUND = 12.0
-"""Degrees above its own angle from which a scene is approached if its own start fails."""
 
 
 def _acceleration(gravity: Any) -> Array:
@@ -342,68 +277,3 @@ def _hints(substrate: Solid, bond: Array, sector: Sector, *, rolls: bool) -> tup
             + f": that motion is not in the {sector.model} model, whose stability is judged"
         )
     return tuple(texts)
-
-
-def _describe(
-    substrate: Solid | None,
-    volume: float,
-    liquid: Liquid,
-    acceleration: Array,
-    hold: str,
-    particles: Sequence[Sphere],
-) -> dict[str, Any]:
-    """The scene by the names of the scene file."""
-    size = float(np.linalg.norm(acceleration))
-    direction = acceleration / size if size else np.array([0.0, 0.0, -1.0])
-    return {
-        "scene": "sessile_droplet",
-        "liquid": {
-            "surface_tension": liquid.surface_tension,
-            "density": liquid.density,
-            "volume": volume,
-        },
-        "gravity": {"acceleration": size, "direction": [float(d) for d in direction]},
-        "substrate": _describe_substrate(substrate),
-        "particle": [described_particle(each) for each in particles],
-        "droplet": {"hold": hold},
-    }
-
-
-def _describe_substrate(substrate: Solid | None) -> dict[str, Any]:
-    match substrate:
-        case None:
-            return {"kind": "none"}
-        case Sphere():
-            size: dict[str, Any] = {
-                "kind": "sphere",
-                "contact_angle": substrate.contact_angle,
-                "radius": substrate.radius,
-            }
-            top = substrate.center == (0.0, 0.0, -substrate.radius)
-            return size if top else size | {"center": list(substrate.center)}
-        case Plane():
-            plane: dict[str, Any] = {"kind": "plane", "contact_angle": substrate.contact_angle}
-            if substrate == Plane(substrate.contact_angle):
-                return plane
-            return plane | {"point": list(substrate.point), "normal": list(substrate.normal)}
-        case SphereLattice():
-            lattice = {
-                "kind": "sphere_lattice",
-                "contact_angle": substrate.contact_angle,
-                "radius": substrate.radius,
-                "spacing": substrate.spacing,
-                "arrangement": substrate.arrangement,
-                "offset": list(substrate.offset),
-            }
-            return lattice if substrate.base is None else lattice | {"base": substrate.base}
-        case Spheres():
-            spheres = {
-                "kind": "spheres",
-                "contact_angle": np.asarray(substrate.contact_angle).tolist(),
-                "centers": np.asarray(substrate.centers).tolist(),
-                "radii": np.asarray(substrate.radii).tolist(),
-            }
-            return spheres if substrate.base is None else spheres | {"base": substrate.base}
-        case _:
-            angle = np.asarray(substrate.contact_angle).tolist()
-            return {"kind": type(substrate).__name__, "contact_angle": angle}

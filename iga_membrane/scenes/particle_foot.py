@@ -14,10 +14,29 @@ from ..surface.supports import Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import SphereContactLine, TrimmedContactLine
 from .beside import as_list, check_reach, mirrored_model, towards_liquid
-from .foot import PREDICTABLE, SHARP, Foot, Question, Rest, foot_of, rest_of, sector_of
+from .foot import foot_of
 from .liquid import MODELS, Mesh
 from .particle_edge import ending_on, ending_space, seat_of
+from .question import Foot, Question, sector_of
 from .round_patch import of_droplet, of_pancake, round_patch
+from .smooth_foot import Rest, rest_of
+from .whole_foot import PREDICTABLE, SHARP
+
+
+def discretizations(
+    substrate: Solid | None, particles: Sequence[Sphere], contact_line: str
+) -> tuple[str, ...]:
+    """How the membrane meets particles, the first choice first and then what is tried where it
+    fails.
+
+    A membrane that ends on its particle is cheaper and more exact; one that passes through it may
+    also lose it, and is solved more often where lines nearly touch. A particle that moves meets one
+    discretization everywhere: the small difference between two would be a force.
+    """
+    one = isinstance(substrate, Plane) and substrate.contact_angle < 180.0 and len(particles) == 1
+    if contact_line != "auto" or not one:
+        return (contact_line,)
+    return ("conforming", "trimmed") if particles[0].motion == "fixed" else ("trimmed",)
 
 
 def with_particles(parts: Question) -> Foot:

@@ -127,6 +127,7 @@ class Scene:
         start from it.
     start_from : that equilibrium's surface to one of this scene's space, both in their scales, if
         the spaces differ.
+    otherwise : the same question in another discretization, tried where this one fails.
     free_edge : the way to find a fixed edge's place at 180 degrees.
     free_particles : those that move.
     substrate : the solid that the membrane touches, for its kind and pictures.
@@ -149,6 +150,7 @@ class Scene:
     ramp: Ramp | None = field(default=None, repr=False)
     predictor: Scene | None = field(default=None, repr=False)
     start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
+    otherwise: Callable[[], Scene] | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     free_particles: FreeParticles | None = field(default=None, repr=False)
     substrate: Solid | None = None
@@ -317,14 +319,3 @@ class Scene:
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""
         return tuple(term.scaled(self.units) for term in self.terms)
-
-
-def described_particle(particle: Sphere) -> dict[str, Any]:
-    """A particle by the names of the scene file."""
-    return {
-        "radius": particle.radius,
-        "center": list(particle.center),
-        "density": particle.density,
-        "contact_angle": particle.contact_angle,
-        "motion": particle.motion,
-    }

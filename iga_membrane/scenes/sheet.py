@@ -38,9 +38,10 @@ from ..terms import (
     TrimmedContactLine,
     Volume,
 )
+from .description import described_particle
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
 from .moving import moving
-from .scene import FreeEdge, Ramp, Scene, described_particle
+from .scene import FreeEdge, Ramp, Scene
 from .sheet_through import sheet_through
 from .start import check_net, funnel
 from .whole_membrane import WholeMembrane, sheet_with_wetted_part

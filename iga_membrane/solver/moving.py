@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..scenes.scene import FreeParticles, Scene
 from .load_stepping import Bracket
-from .solution import Solution
+from .solution import Solution, with_effort
 from .status import Status
 
 BALANCED = 1e-8
@@ -63,15 +63,7 @@ class Places:
 
     def ended(self, last: Solution) -> Solution:
         """A solution with the effort of all."""
-        seconds = {
-            part: sum(one.cpu_seconds[part] for one in self.found) for part in last.cpu_seconds
-        }
-        return replace(
-            last,
-            iterations=tuple(step for one in self.found for step in one.iterations),
-            load_steps=tuple(step for one in self.found for step in one.load_steps),
-            cpu_seconds=seconds,
-        )
+        return with_effort(last, self.found)
 
 
 def settled(scene: Scene, solve_fixed: Callable[[Scene], Solution]) -> Solution:

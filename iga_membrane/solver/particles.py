@@ -65,7 +65,7 @@ def forces_on_particles(
         axis = scale.axes @ trim.term.axis(found.which[i : i + 1])[0]
         height = found.radii[i] * (1.0 - np.cos(found.polar[i])) * scale.length
         level = -(body.constant + float(middle[i] @ slope)) * scale.pressure
-        parts = (float(part @ axis) for part in (weight, contact, -buoyancy))
+        parts = (float(part @ axis) for part in (weight, contact, buoyancy))
         paper = paper_forces(particle, level, height, *parts)
         result.append(
             ParticleForces(

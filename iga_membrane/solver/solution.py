@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -221,3 +221,16 @@ class Solution:
         from ..view.tables import field_dataset
 
         return field_dataset(self, resolution)
+
+
+def with_effort(solution: Solution, attempts: Sequence[Solution]) -> Solution:
+    """A solution with the iterations, load steps and CPU seconds of all attempts, itself one."""
+    seconds = {
+        part: sum(one.cpu_seconds[part] for one in attempts) for part in solution.cpu_seconds
+    }
+    return replace(
+        solution,
+        iterations=tuple(step for one in attempts for step in one.iterations),
+        load_steps=tuple(step for one in attempts for step in one.load_steps),
+        cpu_seconds=seconds,
+    )

@@ -22,8 +22,8 @@ from .newton import NewtonOptions, NewtonResult, newton
 from .options import ON_FAIL, SolverOptions
 from .predictor import first, settings_of
 from .quasi_static import quasi_static
-from .solution import Solution
-from .state import journal_of, start_surface
+from .solution import Solution, with_effort
+from .state import fits, journal_of, start_surface
 from .status import Status
 from .trace import walk
 
@@ -66,6 +66,8 @@ def solve(
     started = process_time()
     if scene.free_particles is not None:
         return _delivered(_with_free_particles(scene, options, started), on_fail)
+    if scene.otherwise is not None and not (scene.ramp is not None and scene.ramp.asked):
+        return _delivered(_either(scene, scene.otherwise(), options, report), on_fail)
     _check_memory(scene, options)
     if scene.ramp is not None and scene.ramp.asked:
         solution = walk(scene.ramp, options, report)[-1]
@@ -96,6 +98,40 @@ def solve(
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
             solution = conclude(outcome, assembly, options, started)
     return _delivered(replace(solution, scene=scene), on_fail)
+
+
+DECIDED = frozenset(
+    status
+    for status in Status
+    if status.name.startswith("CONVERGED")
+    or status in (Status.NO_EQUILIBRIUM, Status.LIMIT_POINT, Status.TOPOLOGY_CHANGE)
+)
+"""Ends of a solve that say something about the liquid, not about the discretization."""
+
+
+def _either(
+    scene: Scene, other: Scene, options: SolverOptions, report: Callable[[float], None]
+) -> Solution:
+    """A scene in the first of two discretizations that solves it, within one limit; if neither
+    does, the end that says more, with both messages and the bracket of either."""
+    first = replace(scene, otherwise=None)
+    if options.start is not None and not fits(options.start, first):
+        return solve(other, options, on_fail="return", report=report)
+    started = process_time()
+    one = solve(first, options, on_fail="return", report=report)
+    if one.success or one.status in (Status.INTERRUPTED, Status.UNVERIFIED):
+        return one
+    log.info("%s: %s; in another discretization", one.status.name, one.message)
+    left = max(started + options.max_cpu_s - process_time(), 1e-3)
+    own = replace(options, max_cpu_s=left, start=None)
+    two = solve(other, own, on_fail="return", report=report)
+    told = two if two.status in DECIDED or one.status not in DECIDED else one
+    found = with_effort(told, [one, two])
+    if told.success:
+        return found
+    missed = one if told is two else two
+    message = f"{told.message}; in another discretization {missed.status.name}: {missed.message}"
+    return replace(found, message=message, bracket=told.bracket or missed.bracket)
 
 
 def _with_free_particles(scene: Scene, options: SolverOptions, started: float) -> Solution:

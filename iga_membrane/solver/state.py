@@ -13,6 +13,7 @@ from ..errors import SceneError, StateError
 from ..files import previous, read_arrays, write_arrays
 from ..records import decode, digest, encode
 from ..scenes.scene import Ramp, Scene
+from ..splines import Space
 from ..surface.surface import Surface
 from .load_stepping import Journal, Progress
 from .options import SolverOptions
@@ -84,22 +85,37 @@ def start_surface(path: str | Path, scene: Scene) -> Surface:
     SceneError
         If its space is another one.
     """
-    found = _read(Path(path))
-    surface, asked = found.surface if isinstance(found, Solution) else None, scene.surface
+    found, asked = _read(Path(path)), scene.surface
+    surface = found.surface if isinstance(found, Solution) else found.result.surface
     if isinstance(found, Progress):
-        local = found.result.surface
-        surface = local.moved(scene.units.to_world(local.points))
-    assert surface is not None
+        surface = surface.moved(scene.units.to_world(surface.points))
     given, wanted = surface.space, asked.space
-    if (given.net_shape, given.degree, given.pole, given.count) != (
-        wanted.net_shape, wanted.degree, wanted.pole, wanted.count
-    ):  # fmt: skip
+    if not _same(given, wanted):
         raise SceneError(
             f"solver.start = {str(path)!r}: control net {given.net_shape} of degree "
             f"{given.degree} given, {wanted.net_shape} of degree {wanted.degree} expected from the "
             "discretization"
         )
     return asked.moved(surface.points)
+
+
+def fits(path: str | Path, scene: Scene) -> bool:
+    """Whether the surface of a state file has the space of a scene.
+
+    Raises
+    ------
+    StateError
+        If the file cannot be trusted.
+    """
+    found = _read(Path(path))
+    surface = found.surface if isinstance(found, Solution) else found.result.surface
+    return _same(surface.space, scene.surface.space)
+
+
+def _same(one: Space, other: Space) -> bool:
+    return (one.net_shape, one.degree, one.pole, one.count) == (
+        other.net_shape, other.degree, other.pole, other.count
+    )  # fmt: skip
 
 
 def _progress(path: str | Path | None, mark: str) -> Progress | None:

@@ -16,7 +16,7 @@ from ..terms import Contact, TrimmedContactLine
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
-from .newton import NewtonOptions, NewtonResult
+from .newton import NewtonResult
 from .options import ON_FAIL, SolverOptions
 from .predictor import first, settings_of
 from .solution import Solution
@@ -126,10 +126,9 @@ def walk(
     started = process_time()
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
         return _each(ramp, options, started, report)
-    settings = NewtonOptions(
-        options.max_iterations, options.tolerance, deadline=started + options.max_cpu_s
-    )
-    assembly = Assembly(ramp(0.0), options.quadrature)
+    first_scene = ramp(0.0)
+    settings = settings_of(first_scene, options, started)
+    assembly = Assembly(first_scene, options.quadrature)
     journal = journal_of(ramp, options)
     if options.start is not None and journal.start is None:
         raise StateError(

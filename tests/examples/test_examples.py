@@ -247,6 +247,25 @@ def test_critical_angle():
     assert load("critical_angle").main().value == pytest.approx(144.05640220715, abs=1e-5)
 
 
+def test_critical_tilt():
+    """Stable up to a limit point; until then the particle carries what pulls the droplet down."""
+    path = load("critical_tilt").main(elements=8)
+    assert path.end.status is iga.Status.LIMIT_POINT
+    assert (path.bracket.index_lo, path.bracket.index_hi) == (0, 1)
+    assert 5.0 < path.bracket.lo < path.bracket.hi < 1.02 * path.bracket.lo
+    for tilt, solution in zip(path.values, path.solutions, strict=True):
+        pull = 0.5 * 4.0 / 3.0 * np.pi * np.sin(np.radians(tilt))
+        assert solution.forces[0].effective[0] == pytest.approx(pull, abs=2e-3)
+        assert solution.hold_force == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.slow
+def test_critical_tilt_converges():
+    coarse, middle, fine = (load("critical_tilt").main(n).bracket.lo for n in (8, 12, 18))
+    assert abs(fine - middle) < 0.5 * abs(middle - coarse)
+    assert fine == pytest.approx(middle, rel=1e-2)
+
+
 def test_convergence_study():
     study = load("convergence_study").main(elements=(8, 16))
     assert study.rates("bspline", 3, "energy")[0] > 5.5

@@ -1,11 +1,14 @@
 """A droplet whose membrane ends on its particle, against the one that passes through it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from helpers import UNIT_VOLUME
 from particle_scenes import BOND, particle, place, pull, scene, size, solved
 
 import iga_membrane as iga
+from iga_membrane.terms import SphereContactLine
 
 ENDS = {"line": "conforming"}
 PLACES = [(95.0, 90.0, 0.2), (20.0, 60.0, 0.1), (65.0, 110.0, 0.4), (115.0, 75.0, 0.15)]
@@ -91,12 +94,73 @@ def test_moving_particle_finds_the_place_of_the_other_discretization():
     center = particle(polar=40.0).center
     free = iga.Sphere(100.0, 0.2, center, 0.0, "vertical")
     places = []
-    for line in ("conforming", "auto"):
+    for line in ("conforming", "trimmed"):
         found = iga.solve(scene(free, line=line, elements=24))
         assert found.success, found.message
         places.append(found.forces[0].center)
     assert size(places[1] - places[0]) < 1e-5
     assert size(places[0] - center) > 0.01
+
+
+def test_paper_s_archimedes_force_up_is_up():
+    """Along the axis from the particle into the liquid, which here leads down."""
+    for line in ("conforming", "trimmed"):
+        found = solved(65.0, 110.0, 0.4, line=line)
+        forces, axis = found.forces[0], np.ravel(found.scene.terms[-1].toward)
+        assert forces.buoyancy[2] > 0.0
+        assert forces.paper["F_B_up"] == pytest.approx(axis @ forces.buoyancy, rel=1e-6)
+        assert axis @ forces.buoyancy < 0.0
+
+
+def test_passes_through_particle_where_ending_on_it_fails():
+    """A wide, hardly wet particle on the shoulder; the effort of both ways is counted."""
+    ends, passes, chosen = (
+        iga.solve(scene(particle(20.0, 130.0, 0.5), line=line), on_fail="return")
+        for line in ("conforming", "trimmed", "auto")
+    )
+    assert not ends.success
+    assert passes.success
+    assert chosen.success
+    np.testing.assert_array_equal(pull(chosen), pull(passes))
+    assert chosen.newton_iterations == ends.newton_iterations + passes.newton_iterations
+    assert len(chosen.iterations) == len(ends.iterations) + len(passes.iterations)
+
+
+def test_starts_from_a_state_of_either_discretization(tmp_path):
+    """From another start control points move along other directions: the same but for the error of
+    so coarse a mesh."""
+    mesh = {"elements": 12, "model": "full", "hold": "xy"}
+    for line in ("conforming", "trimmed"):
+        before, path = iga.solve(scene(particle(), line=line, **mesh)), tmp_path / f"{line}.npz"
+        before.save(path)
+        again = iga.solve(scene(particle(), line="auto", **mesh), iga.SolverOptions(start=path))
+        assert again.unknowns == before.unknowns
+        assert len(again.iterations) < len(before.iterations)
+        assert size(pull(again) - pull(before)) < 1e-3 * size(pull(before))
+
+
+@pytest.mark.slow
+def test_lost_particle_is_named_and_confirmed():
+    """Hardly wet particles that are pulled out: no line on them, and the way to them has an end."""
+    _, normal = place(65.0)
+    lost = iga.solve(
+        scene(particle(65.0, 150.0, shift=0.25 * normal), line="auto"), on_fail="return"
+    )
+    assert (lost.status, lost.kind) == (iga.Status.TOPOLOGY_CHANGE, "detached")
+    assert "in another discretization LIMIT_POINT" in lost.message
+    bracket = lost.bracket
+    assert bracket.parameter == "particle[0].contact_angle"
+    assert bracket.lo < bracket.hi < 150.0
+    assert bracket.hi - bracket.lo < 1e-3 * bracket.lo
+
+
+@pytest.mark.parametrize(
+    ("given", "chosen"),
+    [({}, ["xi2=1"]), ({"motion": "normal"}, [])],
+)
+def test_membrane_ends_on_one_fixed_particle(given, chosen):
+    asked = scene(replace(particle(), **given), line="auto")
+    assert [term.edge for term in asked.terms if isinstance(term, SphereContactLine)] == chosen
 
 
 def test_several_particles_are_refused():

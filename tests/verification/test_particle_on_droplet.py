@@ -121,8 +121,8 @@ center = {list(given.center)}
     path = tmp_path / "particle.toml"
     path.write_text(droplet_file(PLANE.contact_angle, BOND, more, elements=24))
     loaded = iga.load_scene(path).scene
-    assert loaded.description == scene(given, elements=24).description
-    read, asked = iga.solve(loaded), solved(elements=24)
+    assert loaded.description == scene(given, line="auto", elements=24).description
+    read, asked = iga.solve(loaded), solved(line="auto", elements=24)
     np.testing.assert_array_equal(read.forces[0].effective, asked.forces[0].effective)
     assert read.hold_force == asked.hold_force
     assert dict(read.measures) == dict(asked.measures)

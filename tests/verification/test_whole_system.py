@@ -181,3 +181,18 @@ def test_force_beside_the_top_is_slope_of_energy():
         above, below = (solved(p, hold="x").measures["energy"] for p in moved)
         slope = (below - above) / (2.0 * step)
         assert force[axis] == pytest.approx(slope, abs=1e-2 * np.linalg.norm(force))
+
+
+@pytest.mark.slow
+def test_liquid_on_asperities_lifts_a_light_particle_only():
+    """Of a density on either side of the one that the liquid's pull carries."""
+    light = on_top(1.35, 110.0)
+    carried_up = pull(solved(light))[2]
+    assert carried_up > 0.0
+    even = carried_up / (4.0 / 3.0 * np.pi * light.radius**3)
+    answers = [
+        iga.self_cleaning(scene(replace(light, density=part * even)), friction=0.3).verdicts[0]
+        for part in (0.999, 1.001)
+    ]
+    assert [each.answer for each in answers] == ["lifted", "stays"]
+    assert answers[0].normal == pytest.approx(carried_up, rel=1e-6)

@@ -1,0 +1,157 @@
+"""Feet on planes and spheres where the membrane is the liquid-gas surface alone.
+
+It ends on a contact line, or at 180 degrees on a plane tangentially.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import SceneError
+from ..solids import Plane, Sphere
+from ..splines import Grading, points_of
+from ..surface.ring import axisymmetric, drop_space
+from ..surface.supports import Fixed, Sliding
+from ..surface.surface import Surface
+from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from .liquid import Liquid, Mesh
+from .question import BALL, Foot, Question, sector_of
+from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
+
+
+def on_a_line(parts: Question) -> Foot:
+    """The liquid-gas surface alone, its edge a contact line on a plane or a sphere."""
+    substrate, mesh, scale = parts.substrate, parts.asked.mesh(), parts.scale
+    assert isinstance(substrate, (Plane, Sphere))
+    sector = sector_of(mesh, parts.bond)
+    foot = rest_of(substrate, parts.liquid, scale, parts.down)
+    bond = abs(float(parts.bond[2]))
+    grading = _grading(substrate.contact_angle, bond, foot.pancake.length)
+    if parts.held and isinstance(substrate, Sphere):
+        # pulled at, the membrane bends over the sphere's radius, and turns away from it slowly
+        slow = min(1.0, float(np.sin(np.radians(min(substrate.contact_angle, 90.0)))) / WEDGE)
+        first = NECK * substrate.radius / scale.length * slow
+        grading = Grading(min(grading.first, first))
+    if parts.law.penalty is not None:
+        raise SceneError(
+            'solver.contact = "penalty": not available yet with a contact line, only at 180 degrees'
+        )
+    if isinstance(parts.start, str):
+        raise SceneError(f'start = "{parts.start}": only at 180 degrees; leave it out here')
+    if parts.start is None:
+        start = _start(foot, mesh, grading, scale)
+    else:
+        start = parts.start
+        _check_start(start, mesh, substrate)
+    return Foot(start, sector, mesh, [foot.line], [foot.support], grading)
+
+
+def on_the_plane(parts: Question) -> Foot:
+    """A flat foot at 180 degrees: the liquid-gas surface alone, which leaves the plane
+    tangentially where its edge is found to be."""
+    gamma, scale, bond = parts.liquid.surface_tension, parts.scale, parts.down
+    mesh, sector = parts.asked.mesh(), sector_of(parts.asked.mesh(), parts.bond)
+    if not bond > 0 or parts.bond[:2].any():
+        raise SceneError(
+            "substrate.contact_angle = 180, gravity: on a plane only gravity straight towards it "
+            "holds a droplet at 180 degrees; give such gravity or an angle < 180"
+        )
+    foot = rest_of(Plane(STEEPEST), parts.liquid, scale, bond)
+    length = foot.pancake.length
+    rim = rounded(bond, BALL).foot
+    # the foot bends over its own radius or the capillary length, whichever is shorter
+    first = min(3.5 / (np.sqrt(bond) * length), (4.0 * rim / length) ** 0.75)
+    grading = Grading(float(min(1.0, first)))
+    start = _start(foot, mesh, grading, scale)
+    line = PlaneContactLine(gamma, 180.0)
+    return Foot(start, sector, mesh, [line], [Fixed("xi2=0")], grading, tangent=True)
+
+
+def rim_radius(surface: Surface) -> float:
+    """Mean radius of the edge xi2 = 0."""
+    ring = surface.space.bases[0]
+    middle = ring.breaks[:-1] + 0.5 * ring.sizes
+    xi = np.column_stack([np.concatenate([ring.breaks[:-1], middle]), np.zeros(2 * len(middle))])
+    return float(np.linalg.norm(surface.at(xi, 1).position[:, :2], axis=1).mean())
+
+
+def with_rim(surface: Surface, radius: float, scale: Scale) -> Surface:
+    """The same surface with another radius of its edge, the change fading towards the pole."""
+    local = surface.moved(scale.to_local(surface.points))
+    fading = points_of(surface.space, 1.0 - surface.space.abscissae[..., 1:2])
+    points = local.points.copy()
+    points[:, :2] *= 1.0 + (radius / rim_radius(local) - 1.0) * fading
+    return surface.moved(scale.to_world(points))
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """How a drop stands on its substrate.
+
+    Attributes
+    ----------
+    pancake : free surface of the start (dimensionless); lift : height of its rim.
+    line : what the contact line costs; support : on what it slides.
+    """
+
+    pancake: Pancake
+    lift: float
+    line: LineTerm
+    support: Sliding
+
+
+def rest_of(substrate: Plane | Sphere, liquid: Liquid, scale: Scale, bond: float) -> Rest:
+    gamma, angle, unit = liquid.surface_tension, substrate.contact_angle, 4.0 * np.pi / 3.0
+    if isinstance(substrate, Plane):
+        pancake = least_energy_pancake(angle, bond, unit)
+        return Rest(pancake, 0.0, PlaneContactLine(gamma, angle), Sliding("xi2=0"))
+    ball = scale.local_sphere(substrate)
+    polar, cap = drop_on_sphere(angle, ball.radius, unit)
+    x, y, z = (float(a) for a in scale.axes[:, 2])
+    line = SphereContactLine(gamma, substrate, toward=(x, y, z))
+    lift = ball.center[2] + ball.radius * np.cos(polar)
+    return Rest(cap, float(lift), line, Sliding("xi2=0", substrate))
+
+
+NECK = 3.0
+"""First step along a neck on a sphere, by the mean one, over the sphere's radius by the drop's."""
+
+WEDGE = 0.7
+"""Sine of a contact angle below which those steps are shorter as it is."""
+
+
+def _grading(contact_angle: float, bond: float, length: float) -> Grading:
+    """Shorter steps near the rim: for the capillary length, and for a foot nearly tangent to the
+    substrate. The constants balance the errors of height and rim over the whole family."""
+    if bond == 0:
+        return Grading()  # a circular arc has no layer
+    first = min(1.0, 3.5 / (np.sqrt(bond) * length))
+    if contact_angle > 90:
+        first = min(first, max(np.sin(np.radians(contact_angle)), 4e-4) ** 0.5)
+    return Grading(float(first))
+
+
+def _start(foot: Rest, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
+    pancake = foot.pancake
+
+    def profile(t: Array) -> tuple[Array, Array, Array]:
+        r, z = pancake(grading.fraction(t))
+        return r, z, -pancake.length * grading.slope(t)
+
+    space = drop_space(mesh.space, mesh.degree, mesh.elements, angle=pancake.turn)
+    local = axisymmetric(space, profile)
+    return local.moved(scale.to_world(local.points + [0.0, 0.0, foot.lift]))
+
+
+def _check_start(start: Surface, mesh: Mesh, substrate: Plane | Sphere) -> None:
+    check_net(start, drop_space(mesh.space, mesh.degree, mesh.elements))
+    table = start.space.table(2)
+    depth = -float(substrate.gap(start.on(table).position).min())
+    if depth > 1e-6 * start.size:
+        raise SceneError(
+            f"start: the surface lies up to {depth:g} below the substrate (solid 0); lift it by at "
+            f"least {depth:g} along the solid's normal"
+        )
