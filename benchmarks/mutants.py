@@ -17,7 +17,9 @@ ROOT = Path(__file__).parents[1]
 TERMS = ("terms", "solver/test_derivatives.py", "solver/test_solve.py",
          "verification/test_sheet_on_particle.py",
          "verification/test_droplet_on_plane.py", "robustness/test_audit.py",
-         "verification/test_pinned_cap.py", "verification/test_square_sheet.py")  # fmt: skip
+         "verification/test_pinned_cap.py", "verification/test_square_sheet.py",
+         "verification/test_bridge_between_particles.py",
+         "verification/test_whole_membrane.py")  # fmt: skip
 SPOTS = ("solids/test_wet_spot.py", "solver/test_point_supports.py")
 AUDIT = ("robustness/test_audit.py", "robustness/test_never_wrong_silently.py",
          "verification/test_sheet_on_particle.py")  # fmt: skip
