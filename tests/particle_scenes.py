@@ -55,3 +55,20 @@ def pull(solution, which=0):
 
 def size(force):
     return np.linalg.norm(force)
+
+
+def check_convergence_and_balance(meshes, *, sideways):
+    """Forces on three meshes, each half as fine again as the one before, settle at fourth order
+    to 1 part in 10,000; both forces on the droplet balance at that order, to ``sideways``."""
+    coarse, middle, fine = (pull(s)[[0, 2]] for s in meshes)
+    first, last = np.abs(middle - coarse), np.abs(fine - middle)
+    assert last.max() < 1e-4 * size(fine)
+    assert size(last) < size(first) / 1.5**4
+    # what holds the liquid is what the liquid does to the particle; the plane carries the rest
+    across = [abs(s.hold_force[0] - pull(s)[0]) / size(pull(s)) for s in meshes]
+    weight = BOND * UNIT_VOLUME
+    upwards = [abs(s.contact["support_force"] - pull(s)[2] - weight) / weight for s in meshes]
+    assert across[2] < sideways
+    assert upwards[2] < 1e-5
+    assert across[2] < across[0] / 2.25**4
+    assert upwards[2] < upwards[0] / 2.25**4

@@ -4,8 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME
-from particle_scenes import BOND, particle, place, pull, scene, size, solved
+from particle_scenes import (
+    check_convergence_and_balance,
+    particle,
+    place,
+    pull,
+    scene,
+    size,
+    solved,
+)
 
 import iga_membrane as iga
 from iga_membrane.terms import SphereContactLine
@@ -41,17 +48,7 @@ def test_agrees_with_the_membrane_that_passes_through(case, mesh):
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_forces_converge_and_balance(case):
     meshes = [solved(*case, **ENDS, elements=n) for n in (14, 21, 31)]
-    coarse, middle, fine = (pull(s)[[0, 2]] for s in meshes)
-    first, last = np.abs(middle - coarse), np.abs(fine - middle)
-    assert last.max() < 1e-4 * size(fine)
-    assert size(last) < size(first) / 1.5**4
-    sideways = [abs(s.hold_force[0] - pull(s)[0]) / size(pull(s)) for s in meshes]
-    weight = BOND * UNIT_VOLUME
-    upwards = [abs(s.contact["support_force"] - pull(s)[2] - weight) / weight for s in meshes]
-    assert sideways[2] < 1e-4
-    assert upwards[2] < 1e-5
-    assert sideways[2] < sideways[0] / 2.25**4
-    assert upwards[2] < upwards[0] / 2.25**4
+    check_convergence_and_balance(meshes, sideways=1e-4)
 
 
 def test_half_model_agrees_with_full():
