@@ -153,7 +153,7 @@ def test_misspelt_keys_are_refused(path, said):
         (
             "particle",
             [{"radius": 0.2, "center": [0, 0, 0.1], "contact_angle": 90}],
-            "reaches into the substrate",
+            "it reaches 0.1 into the substrate",
         ),
         ("solver.contact", "penalty", "not available yet"),
         ("solver.contact_line", "adhesion", "not available here"),

@@ -32,6 +32,7 @@ def particle_on_droplet():
         gravity=0.5,
         hold="xy",
         particles=[particle],
+        contact_line="trimmed",
         discretization=mesh,
     )
 
