@@ -9,7 +9,6 @@ which the normal turns between samples.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..arrays import Array, Index
 from ..surface.surface import Surface
@@ -57,6 +56,8 @@ def _is_plain(surface: Surface) -> bool:
 
 def _candidates(x: Array, normal: Array, ring: bool) -> Index:
     """(n, 2) numbers of samples that are near in space but not on the membrane."""
+    from scipy.spatial import cKDTree
+
     step, turn = np.zeros(x.shape[:2]), np.zeros(x.shape[:2])
     for axis in (0, 1):
         away = np.linalg.norm(np.diff(x, axis=axis), axis=-1)
