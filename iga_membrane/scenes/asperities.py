@@ -35,9 +35,6 @@ PER_RADIUS = 3.35
 """Elements along the radius of the smallest asperity, by default."""
 FEWEST = 48
 """Elements from the middle to a side at least, for the droplet itself."""
-SOFTEST, HARDEST = 0.032, 500.0
-"""Depth over radius of a penalty from which on the default mesh must be finer, by the power 0.51 of
-the depth, for its dips to stay below a fifth of it; and the elements at most that this asks for."""
 MOST = 600
 """The same at most, by default."""
 SPREAD = 1.15
@@ -161,17 +158,14 @@ def _elements(drop: FlatDrop, pattern: Pattern, wide: float, reach: float, many:
     SceneError
         If the asperities are too small.
     """
-    length, stiffness = pattern.length, pattern.stiffness
+    length = pattern.length
     across = wide / reach * min(reach / FINE, 1.0)  # length of the even elements, by their number
     needed = PER_RADIUS * across / length
-    if many and not stiffness:
+    if many and not pattern.penalized:
         size = length / PER_RADIUS
         if pattern.repels or pattern.narrow(drop.pressure):
             size = element_size(pattern, drop.pressure, wide / (FINE * LEAST))
         needed = graded(reach, wide / size)
-    if stiffness:
-        sunk = (drop.pressure + 2.0 / length) / stiffness / length
-        needed = min(needed * max(1.0, (SOFTEST / sunk) ** 0.51), max(needed, HARDEST))
     if needed > MOST:
         raise SceneError(
             f"substrate.radius: asperities of {length:.2g} droplet radii need {needed:.0f} "

@@ -51,8 +51,7 @@ class Pattern:
         degrees, more of them are wet.
     psi : pi minus the smallest contact angle, in radians.
     single : whether an asperity may carry the membrane at one place of its mesh.
-    stiffness : traction over depth of a penalty that was asked for, else 0: the mesh is then as
-        fine as the depth asks for.
+    penalized : whether a penalty was asked for, whose wet spots are resolved.
     """
 
     length: float
@@ -60,7 +59,7 @@ class Pattern:
     lies: bool = True
     psi: float = 0.0
     single: bool = True
-    stiffness: float = 0.0
+    penalized: bool = False
 
     @property
     def repels(self) -> bool:

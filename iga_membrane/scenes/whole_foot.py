@@ -49,10 +49,10 @@ def on_an_area(parts: Question) -> Foot:
     attracts = parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP)
     lies = attracts or least == 180.0
     unit_law = scale.length**2 / scale.tension
-    stiffness = 0.0 if isinstance(substrate, Plane) else (parts.law.penalty or 0.0) * unit_law
-    single = not stiffness and (least == 180.0 or parts.contact_line == "auto") and not particles
+    penalized = parts.law.penalty is not None and not isinstance(substrate, Plane)
+    single = not penalized and (least == 180.0 or parts.contact_line == "auto") and not particles
     psi = float(np.radians(180.0 - least))
-    pattern = Pattern(length, cell_of(local), lies, psi, single, stiffness)
+    pattern = Pattern(length, cell_of(local), lies, psi, single, penalized)
     skin = whole_skin(
         parts.down,
         unit,
@@ -76,10 +76,12 @@ def on_an_area(parts: Question) -> Foot:
     # on a plane every place is as good, and the centroid is held
     supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
     law = parts.law
+    if penalized:
+        law = given_way(law, (skin.pressure + 2.0 / length) / length / unit_law)
     if skin.ring is not None:
         pressure = skin.pressure * scale.tension / scale.length
         law = replace(law, ring=Ring(skin.ring * scale.length, pressure))
-    elif skin.many and pattern.repels and law.penalty is None:
+    elif skin.many and pattern.repels and not penalized:
         law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
     foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
     if least == 180.0:
@@ -98,6 +100,22 @@ def on_an_area(parts: Question) -> Foot:
     return _through(foot, parts, skin.pressure)
 
 
+def given_way(law: Contact, traction: float) -> Contact:
+    """A penalty so hard that it sinks less than the membrane dips between contact points acts
+    through multipliers that give way.
+
+    Parameters
+    ----------
+    traction : on the smallest asperity, over its radius.
+    """
+    assert law.penalty is not None
+    if traction > HARD * law.penalty:
+        return law
+    return replace(law, penalty=None, compliance=1.0 / law.penalty)
+
+
+HARD = 0.032
+"""Depth over radius from which on a penalty sinks less than the default mesh dips, five times."""
 SHARP = 172.0
 """Contact angle in degrees above which a line on an asperity is not resolved by the default mesh:
 the membrane leaves so flat that lying on the sphere, which attracts it, is the better model."""

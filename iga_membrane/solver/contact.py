@@ -5,12 +5,15 @@ points as control points, so the tractions there are determined. Where the membr
 the solid beside that point, by more than is allowed, the point is lifted by the depth. The
 augmented Lagrangian
 
-    sum_q w_q / (2 delta) ((delta lambda_q - g_q)_+^2 - (delta lambda_q)^2)
+    sum_q w_q / 2 ((delta + c) t_q^2 - delta lambda_q^2),
+    t_q = (delta lambda_q - g_q)_+ / (delta + c),
 
 is once differentiable, so Newton's method with a line search serves from any start; its active set
 is ``delta lambda_q > g_q``. Multipliers are updated and ``delta`` is reduced as the steps become
 small, in the manner of the primal-dual active set method (Hueber, Wohlmuth,
-doi 10.1016/j.cma.2004.08.011). A penalty is the same without multipliers, at all quadrature points.
+doi 10.1016/j.cma.2004.08.011). Exact contact has no compliance ``c``; a
+hard penalty is one, by which each point sinks. A soft penalty is the same without multipliers, at
+all quadrature points.
 """
 
 from __future__ import annotations
@@ -20,9 +23,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index
-from ..solids import Nearest, Plane, Solid, Spheres
+from ..solids import Nearest, Plane, Spheres
 from ..splines import Space, Table
 from ..surface.surface import Surface
+from ..terms import Contact
 
 SOFT = 0.025
 """First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
@@ -33,7 +37,7 @@ HARD = 0.01
 scale of an element, so that the multipliers of its shortest waves settle too."""
 SAMPLES = 12
 """Points along an element at which the membrane's depth is sampled."""
-LIFTS = 10
+LIFTS = 20
 """How often the contact points are lifted at most."""
 RANGE = 1.0
 """Range of adhesion over the gap at which a membrane has left the solid after one element."""
@@ -45,6 +49,9 @@ POINTS = 6
 """Quadrature points in contact on every wet asperity, in the mean, that resolve its spot."""
 SETTLED = 1e-6
 """Gap of an active point over the contact length that counts as none."""
+TINY = 1e-300
+GIVEN = 3e-5
+"""Depth by compliance over the contact length below which gaps count as none by the depth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +78,9 @@ class ContactSet:
 
     Parameters
     ----------
-    solid : in the scene's scale.
+    law : with its solid, in the scene's scale.
     table : functions of the membrane at the contact points.
     area : (elements, points) reference area of each contact point.
-    penalty : traction per depth, or None for exact contact.
-    depth : allowed depth over the contact length, for exact contact.
-    adhesion : energy per area, for exact contact.
     space : of the membrane, and elements : (elements,) of it, to sample the depth.
 
     Attributes
@@ -89,18 +93,17 @@ class ContactSet:
 
     def __init__(
         self,
-        solid: Solid,
+        law: Contact,
         table: Table,
         area: Array,
-        penalty: float | None,
-        depth: float,
-        adhesion: float,
         space: Space,
         elements: Index,
     ) -> None:
+        solid, penalty, adhesion = law.solid, law.penalty, law.adhesion
         self.solid, self.table, self.area = solid, table, area
         self.elements = elements
-        self._space, self._depth, self.adhesion = space, depth, adhesion
+        self._space, self._depth, self.adhesion = space, law.depth, adhesion
+        self._compliance = law.compliance
         self._lift = np.zeros(area.shape)
         self._lifts = LIFTS
         self._known: tuple[Array, Nearest] | None = None
@@ -122,7 +125,7 @@ class ContactSet:
     @property
     def law(self) -> str:
         """In a word."""
-        return "multipliers" if self.exact else "penalty"
+        return "multipliers" if self.exact and not self._compliance else "penalty"
 
     @property
     def tied(self) -> Index | None:
@@ -156,7 +159,8 @@ class ContactSet:
         """Gaps and tractions for control points (count, 3)."""
         at = self._nearest(points)
         gap = at.gap - self._lift
-        traction = np.maximum(self.multipliers - gap / self.delta, 0.0)
+        give = self.delta + self._compliance
+        traction = np.maximum(self.delta * self.multipliers - gap, 0.0) / give
         if not self.adhesion:
             none = np.zeros_like(gap)
             return Touch(at, traction, none, none, none)
@@ -202,8 +206,9 @@ class ContactSet:
 
     def energy(self, touch: Touch) -> float:
         """Energy of the penalty or of the augmented Lagrangian."""
-        square = touch.traction**2 - self.multipliers**2
-        held = 0.5 * (self.delta * square * self.area).sum()
+        taken, known = touch.traction**2, self.multipliers**2
+        square = self.delta * (taken - known) + self._compliance * taken
+        held = 0.5 * (square * self.area).sum()
         return float(held - self.adhesion * (touch.gain * self.area).sum())
 
     def forces(self, touch: Touch, table: Table | None = None) -> Array:
@@ -233,7 +238,7 @@ class ContactSet:
 
     def stiffness(self, touch: Touch) -> Array:
         """(elements, points) derivative of the traction by the depth."""
-        return np.asarray((touch.traction > 0) / self.delta + touch.rise)
+        return np.asarray((touch.traction > 0) / (self.delta + self._compliance) + touch.rise)
 
     def objection(self, touch: Touch) -> str | None:
         """Why the mesh is too coarse for this law, or None."""
@@ -277,7 +282,9 @@ class ContactSet:
             return
         self.rounds += 1
         change = self.delta * np.abs(touch.traction - self.multipliers)
-        self.settled = bool(change.max(initial=0.0) <= SETTLED * self.length)
+        sunk = self._compliance * touch.traction.max(initial=0.0)
+        least = min(self.length, sunk / GIVEN) if sunk else self.length
+        self.settled = bool(change.max(initial=0.0) <= SETTLED * least)
         if (self.delta <= self._hard).all() and self._lifts:
             self.settled &= not self._lift_points(touch, points)
         if self.settled:
@@ -291,8 +298,15 @@ class ContactSet:
         near = np.flatnonzero((touch.at.gap < 0.5 * self.length).any(axis=1))
         dense = self._space.table(SAMPLES, self.elements[near])
         gap = self.solid.nearest(dense.values @ points[dense.functions]).gap
-        depth = -gap.min(axis=1, initial=0.0)
-        allowed = self._depth * self.length
-        deep = depth > 0.8 * allowed
-        self._lift[near[deep]] = touch.at.gap[near[deep]] + depth[deep, None] - 0.5 * allowed
-        return bool(deep.any())
+        depth = -gap.min(axis=1)[:, None]
+        sunk = self._compliance * touch.traction[near]
+        aim, most = 0.5 * self._depth * self.length, 0.8 * self._depth * self.length
+        off = depth > most
+        if self._compliance:
+            # nowhere deeper than by the traction inside the spots
+            load = touch.traction * self.area
+            aim = self._compliance * (load * touch.traction).sum() / max(load.sum(), TINY)
+            off = depth > 1.05 * aim
+        lifted = touch.at.gap[near] + depth - aim + sunk
+        self._lift[near] = np.where(off, lifted, self._lift[near])
+        return bool(off.any())

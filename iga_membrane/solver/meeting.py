@@ -45,8 +45,7 @@ def contact_of(scene: Scene, surface: Surface, points: tuple[int, int]) -> Conta
     points = (1, 1) if term.penalty is None else points
     table = sector_table(surface.space, scene.sector, points)
     area = vary.element_points(table, surface.points).area * table.weights
-    law = term.penalty, term.depth, term.adhesion
-    return ContactSet(term.solid, table, area, *law, surface.space, elements)
+    return ContactSet(term, table, area, surface.space, elements)
 
 
 def trim_of(
@@ -77,7 +76,7 @@ def same_law(one: Contact | None, other: Contact | None) -> bool:
     """Whether two laws of contact are the same, for the same solid."""
     if one is None or other is None or type(one.solid) is not type(other.solid):
         return False
-    laws = [(c.penalty, c.depth, c.adhesion, c.ring) for c in (one, other)]
+    laws = [(c.penalty, c.depth, c.adhesion, c.ring, c.compliance) for c in (one, other)]
     fields = [vars(c.solid) for c in (one, other)]
     return laws[0] == laws[1] and all(
         np.array_equal(fields[0][key], fields[1][key])

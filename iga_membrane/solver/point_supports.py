@@ -22,7 +22,7 @@ from ..splines import Table
 from ..splines.point_load import effective_radius
 from ..surface.sector import in_sector, mirrors
 from ..surface.surface import Surface
-from ..terms import Ring
+from ..terms import Contact, Ring
 from .contact import ContactSet, Touch
 
 WIDEST = 2.0
@@ -85,7 +85,7 @@ class PointSupports(ContactSet):
         self._scene, self._tension, self._ring = scene, tension, ring
         supports = supports_of(scene, solid, ring.radius, start)
         area = supports.share[:, None]
-        super().__init__(solid, supports.table, area, 1.0, np.inf, 0.0, start.space, elements)
+        super().__init__(Contact(solid, 1.0), supports.table, area, start.space, elements)
         self._take(supports)
 
     @property

@@ -44,6 +44,8 @@ class Contact(Term):
         of the smallest sphere (plane: over the scene's length).
     adhesion : energy per wetted area, ``gamma (1 + cos(theta))``.
     ring : where each asperity carries the membrane; None where contact is resolved.
+    compliance : depth per traction by which exact contact gives way all the same, one over a
+        penalty so hard that the membrane would dip deeper between contact points than it sinks.
     """
 
     solid: Solid
@@ -51,6 +53,7 @@ class Contact(Term):
     depth: float = 1e-2
     adhesion: float = 0.0
     ring: Ring | None = None
+    compliance: float = 0.0
     name = "contact"
 
     def __post_init__(self) -> None:
@@ -58,10 +61,12 @@ class Contact(Term):
             number("solver.penalty", self.penalty, above=0.0)
         number("solver.penetration_tolerance", self.depth, above=0.0)
         number("adhesion", self.adhesion, least=0.0)
+        number("compliance", self.compliance, least=0.0)
 
     def scaled(self, scale: Scale) -> Contact:
-        eps = None if self.penalty is None else self.penalty * scale.length**2 / scale.tension
+        unit = scale.length**2 / scale.tension
+        eps = None if self.penalty is None else self.penalty * unit
         adhesion = self.adhesion / scale.tension
         solid = scale.local_solid(self.solid)
         ring = None if self.ring is None else self.ring.scaled(scale)
-        return Contact(solid, eps, self.depth, adhesion, ring)
+        return Contact(solid, eps, self.depth, adhesion, ring, self.compliance / unit)

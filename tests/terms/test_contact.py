@@ -9,7 +9,7 @@ import iga_membrane as iga
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.terms import Contact
 
-PENALTY = 50.0
+PENALTY, HARD = 50.0, 1e4
 
 
 def cell(model, penalty, center=(0.0, 0.0, -1.0)):
@@ -52,6 +52,8 @@ def scenes():
         yield pytest.param(rough("eighth", penalty), id=f"lattice eighth {law}")
         yield pytest.param(rough("full", penalty, (0.1, 0.2)), id=f"lattice full {law}")
         yield pytest.param(own(penalty), id=f"pillars {law}")
+    for model, offset in (("eighth", (0.0, 0.0)), ("full", (0.1, 0.2))):
+        yield pytest.param(rough(model, HARD, offset), id=f"lattice {model} hard penalty")
 
 
 SCENES = list(scenes())
