@@ -79,7 +79,7 @@ def test_every_status_of_an_iteration_has_a_remedy():
 
 @pytest.mark.parametrize("when", [1, 2, 3, 5])
 @pytest.mark.parametrize("how", ["nan", "inf"])
-def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, when, how):
+def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, tmp_path, when, how):
     """N2: the forces of one iteration are not finite."""
     calls = []
     original = Assembly.system
@@ -95,7 +95,12 @@ def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, when,
     scene = droplet(120, 1.0, elements=8)
     solution = iga.solve(scene, on_fail="return")
     assert np.isfinite(solution.surface.points).all()
-    assert finite(dict(solution.measures))
+    assert finite(result(solution))
+    solution.save(tmp_path / "state.npz")
+    with np.load(tmp_path / "state.npz", allow_pickle=False) as saved:
+        numbers = [saved[name] for name in saved.files if saved[name].dtype.kind == "f"]
+    assert numbers
+    assert all(np.isfinite(array).all() for array in numbers)
     if not solution.success:
         assert solution.status is iga.Status.NONFINITE
     else:
@@ -161,7 +166,7 @@ def test_contact_that_flips_at_every_step_ends(monkeypatch):
     lattice = iga.SphereLattice(180, 0.5, 1.5)
     scene = iga.sessile_droplet(lattice, volume=4.19, gravity=0.5, discretization=mesh)
     solution = iga.solve(scene, options, on_fail="return")
-    assert not solution.success
+    assert solution.status in (iga.Status.STALLED, iga.Status.MAX_ITER)
     check_contract(solution)
 
 
