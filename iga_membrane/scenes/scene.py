@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Solid, Sphere
+from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
 from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
@@ -263,9 +263,10 @@ class Scene:
     @property
     def loose_axes(self) -> str:
         """Axes along which the membrane is free to slide on a plane; particles hold it."""
-        on_plane = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
+        ends_on_it = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
+        lies_on_it = any(isinstance(t, Contact) and isinstance(t.solid, Plane) for t in self.terms)
         held = self.particles or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports)
-        if not on_plane or held:
+        if held or not (ends_on_it or lies_on_it):
             return ""
         return "".join(axis for axis in "xy" if axis not in self.sector.mirrored)
 

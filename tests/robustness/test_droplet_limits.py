@@ -1,4 +1,4 @@
-"""Extremes of a drop on a plane (P1, P3, P6, N9): right, or a status that says why not."""
+"""Extremes of a drop on a plane (P1-P4, P6, P12, N9): right, or a status that says why not."""
 
 import numpy as np
 import pytest
@@ -23,21 +23,85 @@ def test_caps_at_every_angle(angle):
         assert exact["contact_radius"] < 0.02
 
 
-@pytest.mark.parametrize("bond", [0, 1e-6, 1e-3, 0.1, 1, 10, 100, 1000])
-def test_bond_numbers_from_zero_to_a_thousand(bond):
-    solution = iga.solve(droplet(150, bond))
-    exact = drop_on_plane(bond, 150)
+EASY = [(150, bond) for bond in (0, 1e-6, 1e-3, 0.1, 1, 10, 100)]
+OTHERS = [(150, 1000), *((180, bond) for bond in (1e-3, 0.1, 1, 10, 100, 1000))]
+
+
+@pytest.mark.parametrize(
+    ("angle", "bond"), [*EASY, *(pytest.param(*case, marks=pytest.mark.slow) for case in OTHERS)]
+)
+def test_bond_numbers_from_zero_to_a_thousand(angle, bond):
+    solution = iga.solve(droplet(angle, bond))
+    exact = drop_on_plane(bond, angle)
     assert worst(solution.measures, exact, ("height", "p_base")) <= 1e-3
     if bond == 1000:
-        puddle = 2 * np.sin(np.radians(75)) / np.sqrt(bond)
+        puddle = 2 * np.sin(np.radians(0.5 * angle)) / np.sqrt(bond)
         assert solution.measures["height"] == pytest.approx(puddle, rel=2e-2)
+
+
+@pytest.mark.parametrize("bond", [1e-6, pytest.param(1e-5, marks=pytest.mark.slow)])
+def test_a_ball_that_hardly_presses_on_its_plane_touches_it_in_a_point(bond):
+    """Its wet spot is narrower than a thousandth; the shape is right all the same."""
+    found = iga.solve(droplet(180, bond), on_fail="return")
+    assert found.status is iga.Status.TOPOLOGY_CHANGE
+    assert "in a point" in found.message
+    assert worst(found.measures, drop_on_plane(bond, 180), ("height", "p_base")) <= 1e-3
+
+
+def test_a_ball_that_does_not_press_on_its_plane_is_refused():
+    """P2"""
+    with pytest.raises(iga.SceneError, match=r"contact_angle = 180.*give such gravity"):
+        droplet(180, 0.0)
+
+
+@pytest.mark.parametrize(
+    "angle", [150, *(pytest.param(a, marks=pytest.mark.slow) for a in (30, 90))]
+)
+def test_a_heavy_droplet_is_found_from_that_without_weight(angle):
+    """P4: one load step from a ball's cap to a puddle."""
+    start = droplet(angle).surface
+    scene = iga.sessile_droplet(
+        iga.Plane(contact_angle=angle), volume=UNIT_VOLUME, gravity=1000.0, start=start
+    )
+    solution, direct = iga.solve(scene), iga.solve(droplet(angle, 1000.0))
+    assert solution.last_good_load.load == 1.0
+    assert worst(solution.measures, direct.measures) <= 1e-6
 
 
 @pytest.mark.parametrize("volume", [1e-30, 1e30])
 def test_volumes_beyond_any_unit(volume):
-    solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=70), volume=volume))
-    radius = cap_on_plane(70.0)["contact_radius"] * (volume / UNIT_VOLUME) ** (1 / 3)
+    """N9: the digits are those of any other volume, and so is the way to them."""
+    scene = iga.sessile_droplet(iga.Plane(contact_angle=70), volume=volume)
+    solution, base = iga.solve(scene), iga.solve(droplet(70))
+    assert solution.newton_iterations == base.newton_iterations
+    length = (volume / UNIT_VOLUME) ** (1 / 3)
+    for name, power in {"contact_radius": 1, "height": 1, "A_LG": 2, "p_base": -1}.items():
+        found = solution.measures[name] / length**power
+        assert found == pytest.approx(base.measures[name], rel=1e-9), name
+    radius = cap_on_plane(70.0)["contact_radius"] * length
     assert solution.measures["contact_radius"] == pytest.approx(radius, rel=1e-8)
+
+
+TILTED = [
+    (120.0, {}),
+    *(pytest.param(angle, {}, marks=pytest.mark.slow) for angle in (30.0, 60.0, 150.0)),
+    pytest.param(180.0, {"penalty": 1e4, "penetration_tolerance": 0.1}, marks=pytest.mark.slow),
+    pytest.param(180.0, {"start": "touching"}, marks=pytest.mark.slow),
+]
+
+
+@pytest.mark.parametrize("degrees", [1e-3, 5.0, 45.0, 90.0])
+@pytest.mark.parametrize(("angle", "options"), TILTED)
+def test_nothing_holds_a_drop_on_a_smooth_tilted_plane(angle, options, degrees):
+    """P12"""
+    tilt = np.radians(degrees)
+    gravity = (np.sin(tilt), 0.0, -np.cos(tilt))
+    given = {"volume": UNIT_VOLUME, "gravity": gravity} | options
+    scene = iga.sessile_droplet(iga.Plane(contact_angle=angle), **given)
+    solution = iga.solve(scene, on_fail="return")
+    assert solution.status is iga.Status.NO_EQUILIBRIUM
+    asked = UNIT_VOLUME * np.sin(tilt)
+    assert solution.hold_force == pytest.approx([-asked, 0, 0], rel=1e-3, abs=1e-12)
 
 
 @pytest.mark.slow

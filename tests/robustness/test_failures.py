@@ -1,7 +1,6 @@
 """What a failed solve hands over, and faults put into a solve on purpose (status contract; N1-N4,
 N7, N8, N13, S9)."""
 
-import json
 import signal
 import subprocess
 import sys
@@ -10,6 +9,7 @@ import time
 import numpy as np
 import pytest
 from helpers import droplet, droplet_file, particle_sheet, path_file, pinned_cap
+from robustness.contract import check_contract, finite, unheld_droplet
 
 import iga_membrane as iga
 from iga_membrane.cli import main
@@ -24,28 +24,6 @@ HARD = {
     "contact area": lambda: droplet(180, 100.0, elements=8),
     "sheet": lambda: particle_sheet(15, elements=6, center=(0, 0, -0.3), gravity=0.1),
 }
-
-
-def finite(value):
-    if isinstance(value, dict):
-        return all(finite(item) for item in value.values())
-    if isinstance(value, (list, tuple)):
-        return all(finite(item) for item in value)
-    return not isinstance(value, float) or np.isfinite(value)
-
-
-def check_contract(solution):
-    """Everything that a failure owes: section 0 of the bar."""
-    assert not solution.success
-    assert np.isfinite(solution.surface.points).all()
-    assert finite(dict(solution.measures))
-    assert finite(json.loads(json.dumps(result(solution))))
-    assert len(solution.message) > 20
-    residuals = [step.residual for step in solution.iterations]
-    assert residuals
-    assert np.isfinite(residuals).all()
-    assert all(np.isfinite([step.step, step.taken]).all() for step in solution.iterations)
-    assert solution.load_steps
 
 
 @pytest.mark.parametrize("name", HARD)
@@ -101,7 +79,7 @@ def test_every_status_of_an_iteration_has_a_remedy():
 
 @pytest.mark.parametrize("when", [1, 2, 3, 5])
 @pytest.mark.parametrize("how", ["nan", "inf"])
-def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, when, how):
+def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, tmp_path, when, how):
     """N2: the forces of one iteration are not finite."""
     calls = []
     original = Assembly.system
@@ -117,7 +95,12 @@ def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, when,
     scene = droplet(120, 1.0, elements=8)
     solution = iga.solve(scene, on_fail="return")
     assert np.isfinite(solution.surface.points).all()
-    assert finite(dict(solution.measures))
+    assert finite(result(solution))
+    solution.save(tmp_path / "state.npz")
+    with np.load(tmp_path / "state.npz", allow_pickle=False) as saved:
+        numbers = [saved[name] for name in saved.files if saved[name].dtype.kind == "f"]
+    assert numbers
+    assert all(np.isfinite(array).all() for array in numbers)
     if not solution.success:
         assert solution.status is iga.Status.NONFINITE
     else:
@@ -146,13 +129,11 @@ def test_an_energy_that_is_not_finite_is_no_obstacle(monkeypatch, when):
 
 
 def test_a_rigid_motion_that_nothing_holds_takes_no_long_step():
-    """N3: a drop on a plane without a held centroid is free to slide."""
-    scene = droplet(120, model="full", elements=8)
-    terms = [t for t in scene.terms if not isinstance(t, iga.Centroid)]
-    free = iga.Scene(scene.surface, terms, [iga.Sliding()], kind="sessile_droplet")
+    """N3: a drop on a plane without a held centroid is free to slide, and is told to be."""
+    free = unheld_droplet()
     solution = iga.solve(free, on_fail="return")
-    assert not solution.success
-    assert "slide along x, y" in solution.message or solution.status is not None
+    assert solution.status is iga.Status.CONVERGED_MARGINAL
+    assert "free to slide along x, y" in solution.message
     start = free.local_surface().points
     moved = free.units.to_local(solution.surface.points) - start
     assert np.abs(moved).max() <= 1.0
@@ -185,7 +166,7 @@ def test_contact_that_flips_at_every_step_ends(monkeypatch):
     lattice = iga.SphereLattice(180, 0.5, 1.5)
     scene = iga.sessile_droplet(lattice, volume=4.19, gravity=0.5, discretization=mesh)
     solution = iga.solve(scene, options, on_fail="return")
-    assert not solution.success
+    assert solution.status in (iga.Status.STALLED, iga.Status.MAX_ITER)
     check_contract(solution)
 
 

@@ -63,13 +63,6 @@ def test_the_faintest_tilt_is_no_equilibrium():
     assert iga.solve(scene, on_fail="return").status is iga.Status.NO_EQUILIBRIUM
 
 
-def test_a_membrane_free_to_slide_is_not_called_stable():
-    scene = droplet(120, model="full", elements=8)
-    terms = [t for t in scene.terms if not isinstance(t, iga.Centroid)]
-    free = iga.Scene(scene.surface, terms, [iga.Sliding()], kind="sessile_droplet")
-    assert not iga.solve(free, on_fail="return").success
-
-
 def test_a_hold_without_volume_reports_its_force():
     terms = [TENSION, iga.Pressure(1.0), iga.Gravity(1.0, (0.3, 0, 0)), iga.Centroid("x")]
     solution = iga.solve(pinned_cap(1.0, terms, "half"), on_fail="return")
@@ -77,7 +70,9 @@ def test_a_hold_without_volume_reports_its_force():
     assert solution.hold_force[0] == pytest.approx(-weight, rel=1e-8)
 
 
-@pytest.mark.parametrize(("angle", "bond"), [(0.5, 100.0), (1.0, 1000.0)])
+@pytest.mark.parametrize(
+    ("angle", "bond"), [(0.5, 100.0), pytest.param(1.0, 1000.0, marks=pytest.mark.slow)]
+)
 def test_a_solver_at_a_loss_does_not_claim_a_limit(angle, bond):
     solution = iga.solve(
         droplet(angle, bond), iga.SolverOptions(min_load_step=0.02), on_fail="return"

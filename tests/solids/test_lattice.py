@@ -67,6 +67,18 @@ def test_nearest_surface_is_that_of_a_search_over_all_spheres(solid):
     assert off == pytest.approx(solid.radius_of(owner[spheres]), abs=1e-14)
 
 
+@pytest.mark.parametrize("count", [1, 9, 49, 400, 10_000])
+def test_search_among_few_and_many_is_that_over_all(count):
+    """P9"""
+    rng = np.random.default_rng(count)
+    radius = 0.3 / np.sqrt(count)
+    solid = iga.Spheres(180.0, rng.uniform([-1, -1, -radius], [1, 1, 0], (count, 3)), radius)
+    points = rng.uniform([-1, -1, -0.1], [1, 1, 0.1], (300, 3))
+    found, (gap, owner) = solid.nearest(points), brute_force(solid, points)
+    assert np.array_equal(found.gap, gap)
+    assert np.array_equal(found.which, owner)
+
+
 @pytest.mark.parametrize("arrangement", ["square", "hexagonal"])
 def test_a_lattice_is_the_list_of_its_spheres(arrangement):
     solid = lattice(arrangement, (0.03, 0.02))

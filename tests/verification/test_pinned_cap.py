@@ -59,7 +59,11 @@ def test_suction_is_pressure_upside_down():
 
 
 @pytest.mark.parametrize(
-    ("degree", "elements"), [(2, 8), (3, 8), pytest.param(4, 20, marks=pytest.mark.slow)]
+    ("degree", "elements"),
+    [
+        (2, 8),
+        *(pytest.param(*m, marks=pytest.mark.slow) for m in ((3, 8), (4, 20), (None, None))),
+    ],
 )
 def test_no_cap_above_the_pressure_of_the_hemisphere(degree, elements):
     scene = cap(pressure=2.1, degree=degree, elements=elements)
@@ -107,6 +111,17 @@ def test_a_volume_passes_the_hemisphere_and_its_pressure_does_not():
         else:
             assert held.status is iga.Status.CONVERGED_SADDLE
             assert held.index == 1
+
+
+@pytest.mark.parametrize(("near", "far"), [(1.9999, 0.5), (1.999, -1.0), (1.9, -1.99)])
+def test_a_long_step_away_from_a_fold_stays_on_its_branch(near, far):
+    """L8: two caps have each pressure; the larger one is unstable, and near the fold they meet."""
+    path = iga.trace(lambda p: cap(pressure=p), (near, far), parameter="sheet.pressure")
+    assert path.success
+    assert all(s.index == 0 for s in path.solutions)
+    depth = 2.0 / abs(far) - np.sqrt(4.0 / far**2 - 1.0)
+    volume = np.sign(far) * exact_cap(depth)["V_liq"]
+    assert path.solutions[-1].measures["V_liq"] == pytest.approx(volume, rel=1e-8)
 
 
 def test_a_square_sheet_under_a_small_load_is_the_linear_membrane():
