@@ -366,6 +366,10 @@ def test_info_prints_a_result_wherever_it_lies(tmp_path, capsys):
     (tmp_path / "other.json").write_text(json.dumps({"a": 1}))
     assert main(["info", str(tmp_path / "other.json")]) == 2
     assert "not a result file" in capsys.readouterr().err
+    newer = json.loads((tmp_path / "result.json").read_text()) | {"schema": 2}
+    (tmp_path / "newer.json").write_text(json.dumps(newer))
+    assert main(["info", str(tmp_path / "newer.json")]) == 2
+    assert "schema 2, this version reads schema 1" in capsys.readouterr().err
 
 
 def test_plot_draws_a_result(tmp_path, monkeypatch):
