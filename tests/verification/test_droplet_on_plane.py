@@ -33,8 +33,19 @@ def test_published_drops_through_the_command_line(case, tmp_path):
     assert result["load_steps"] == 1
 
 
-@pytest.mark.parametrize("angle", [3, 10, 45, 90, 135, 160, 175, 177, 179])
-@pytest.mark.parametrize("bond", [0, 0.05, 0.7, 5, 30, 100])
+FAMILY = [(angle, bond) for bond in (0, 0.05, 0.7, 5, 30, 100)
+          for angle in (3, 10, 45, 90, 135, 160, 175, 177, 179)]  # fmt: skip
+QUICK = (3, 90, 179)
+"""Angles at which heavy droplets are among the default tests."""
+
+
+@pytest.mark.parametrize(
+    ("angle", "bond"),
+    [
+        pytest.param(*one, marks=[pytest.mark.slow] if one[1] >= 30 and one[0] not in QUICK else [])
+        for one in FAMILY
+    ],
+)
 def test_other_drops_of_the_family(angle, bond):
     solution = solved(angle, bond)
     extreme = not 10 < angle < 170 or bond >= 60
