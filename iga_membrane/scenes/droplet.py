@@ -12,7 +12,6 @@ from ..arrays import Array
 from ..checks import choice, number, record, vector
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
-from ..surface.supports import Sector
 from ..surface.surface import Surface
 from ..terms import (
     Centroid,
@@ -33,7 +32,9 @@ from .foot import CONTACT_LINES, foot_of
 from .free import at_displacement, frame_of, pulled_by, seat_of
 from .liquid import Discretization, Liquid, with_defaults
 from .moving import check_fixed, fixed, moving
-from .particle_foot import discretizations, with_particles
+from .one_asperity import discretizations as asperity_lines
+from .particle_foot import discretizations as particle_lines
+from .particle_foot import with_particles
 from .question import Question
 from .scene import FreeEdge, Ramp, Scene
 from .smooth_foot import rim_radius, with_rim
@@ -105,7 +106,6 @@ def sessile_droplet(
     volume = number("liquid.volume", volume, above=0.0)
     choice("droplet.hold", hold, HOLDS)
     choice("solver.contact_line", contact_line, CONTACT_LINES)
-    contact_line, *others = discretizations(asked_substrate, grains, contact_line)
     acceleration = _acceleration(gravity)
     bridges = asked_substrate is None and len(grains) == 2
     if bridges:
@@ -113,6 +113,10 @@ def sessile_droplet(
     else:
         origin, axes = _frame(substrate, free=asked_substrate is None)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
+    if grains or penalty is not None or start is not None:
+        contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
+    else:
+        contact_line, *others = asperity_lines(substrate, length, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
     with np.errstate(over="ignore", invalid="ignore"):
@@ -160,6 +164,8 @@ def sessile_droplet(
             "hold": hold,
             "contact_line": contact_line,
             "particles": fixed(grains),
+            "penalty": penalty,
+            "penetration_tolerance": penetration_tolerance,
         }
         return sessile_droplet(**given | changed)
 
@@ -170,8 +176,10 @@ def sessile_droplet(
         return at_displacement(grains[0], length, displacement)
 
     # at 180 degrees on a plane there is nothing to start from without gravity
-    has_way = isinstance(substrate, Sphere) or (
-        isinstance(substrate, Plane) and substrate.contact_angle < 180.0
+    has_way = (
+        isinstance(substrate, Sphere)
+        or contact_line == "conforming"
+        or (isinstance(substrate, Plane) and substrate.contact_angle < 180.0)
     )
     described = described_droplet(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
@@ -201,9 +209,7 @@ def sessile_droplet(
         hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=_hints(
-            substrate, bond, sector, rolls=asked_substrate is not None or not (held or bridges)
-        ),
+        warnings=_hints(substrate),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
@@ -211,6 +217,10 @@ def sessile_droplet(
         toward = axes[:, 2] * [[1.0], [-1.0]][: len(grains)]
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+    if others:
+        scene = replace(
+            scene, otherwise=lambda: again(contact_line=others[0], discretization=asked)
+        )
     if grains:
         line, gamma = built.terms[-1], liquid.surface_tension
         if built.alone is None:
@@ -221,12 +231,14 @@ def sessile_droplet(
             # it must not roll away from its particles
             bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
             alone = from_another_angle(replace(scene, particles=()), bare, built.alone)
-        other = (lambda: again(contact_line=others[0])) if others else None
-        scene = replace(scene, start_from=built.start_from, otherwise=other)
+        scene = replace(scene, start_from=built.start_from)
         scene = from_alone(scene, alone)
         assert isinstance(line, (TrimmedContactLine, SphereContactLine))
         toward = np.atleast_2d(np.array(line.toward))
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+    if built.directions is not None and asked.elements is None and start is None:
+        mesh = replace(asked, model=sector.model, elements=2 * built.mesh.elements)
+        scene = replace(scene, finer=lambda: again(discretization=mesh))
     if built.predictor:
         return from_another_angle(scene, terms, built)
     if not built.tangent:
@@ -262,18 +274,11 @@ def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float],
     return (x, y, z + substrate.radius), np.eye(3)
 
 
-def _hints(substrate: Solid, bond: Array, sector: Sector, *, rolls: bool) -> tuple[str, ...]:
-    texts = []
+def _hints(substrate: Solid) -> tuple[str, ...]:
     angle = float(np.min(substrate.contact_angle))
-    if angle <= np.pi:
-        texts.append(
-            f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
-            "angles are in degrees through the liquid"
-        )
-    if rolls and isinstance(substrate, Sphere) and sector.model in ("quarter", "eighth"):
-        texts.append(
-            "a drop on a smooth sphere "
-            + ("slides off it" if bond.any() else "rolls on it freely")
-            + f": that motion is not in the {sector.model} model, whose stability is judged"
-        )
-    return tuple(texts)
+    if angle > np.pi:
+        return ()
+    return (
+        f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
+        "angles are in degrees through the liquid",
+    )

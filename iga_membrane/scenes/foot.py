@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
+from .one_asperity import one_asperity
 from .question import Foot, Question
 from .smooth_foot import on_a_line, on_the_plane
 from .whole_foot import on_an_area, through_one
@@ -26,7 +29,7 @@ def foot_of(parts: Question) -> Foot:
                 "180 degrees"
             )
     elif isinstance(solid, (SphereLattice, Spheres)):
-        refused = ("conforming",)
+        refused = ()
     elif isinstance(solid, Sphere):
         refused = ("adhesion",)
     if way in refused:
@@ -35,6 +38,8 @@ def foot_of(parts: Question) -> Foot:
             'one sphere also "trimmed", on asperities "trimmed", or "adhesion" near 180 degrees; '
             '"auto" knows'
         )
+    if isinstance(solid, (SphereLattice, Spheres)) and way == "conforming":
+        return on_a_line(replace(parts, substrate=one_asperity(solid, parts.scale.length)))
     if isinstance(solid, Sphere) and way == "trimmed":
         return through_one(parts)
     if isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0:

@@ -132,6 +132,7 @@ class Scene:
     start_from : that equilibrium's surface to one of this scene's space, both in their scales, if
         the spaces differ.
     otherwise : the same question in another discretization, tried where this one fails.
+    finer : the same question on a finer mesh, tried where the audit finds this one too coarse.
     free_edge : the way to find a fixed edge's place at 180 degrees.
     free_particles : those that move.
     substrate : the solid that the membrane touches, for its kind and pictures.
@@ -155,6 +156,7 @@ class Scene:
     predictor: Scene | None = field(default=None, repr=False)
     start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
     otherwise: Callable[[], Scene] | None = field(default=None, repr=False)
+    finer: Callable[[], Scene] | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     free_particles: FreeParticles | None = field(default=None, repr=False)
     substrate: Solid | None = None

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from time import process_time
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..errors import GeometryError
 from ..scenes.scene import Scene
+from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import Centroid, Volume
 from .assembly import Assembly
@@ -19,7 +21,15 @@ from .contact_record import contact_record
 from .crossing import crossing
 from .forces import ParticleForces, particle_forces
 from .inverse_root import SingularMatrix
-from .judge import contact_objection, judge, overload, reaches_boundary, rolling, too_soft
+from .judge import (
+    contact_objection,
+    judge,
+    leaves_its_asperity,
+    overload,
+    reaches_boundary,
+    rolling,
+    too_soft,
+)
 from .load_stepping import Bracket, LoadStep, Progress
 from .measures import measures, volume
 from .newton import NewtonResult
@@ -81,8 +91,12 @@ def conclude(
         message = "the contact line reaches the rim: no sheet is left between them"
     if status not in (Status.CONVERGED_STABLE, Status.INTERRUPTED):
         message += overload(scene, assembly, multipliers)
+    left = leaves_its_asperity(scene, surface, status, message)
+    if left is not None:
+        status, kind, message = left
     scale = scene.units
     found = measures(scene, assembly, surface, multipliers)
+    contact = contact_record(scene, assembly, result, found, checked)
     total = process_time() - started - assembly.compile_seconds
     return Solution(
         scene=scene,
@@ -99,7 +113,7 @@ def conclude(
         audit=checked,
         volume_error=_volume_error(scene, inside),
         hold_force=hold,
-        contact=contact_record(scene, assembly, result, found, checked),
+        contact=contact,
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
         load_steps=tuple(outcome.steps),
@@ -112,7 +126,7 @@ def conclude(
             "contact": 0.0,
             "solve": total,
         },
-        warnings=_warnings(scene),
+        warnings=_warnings(scene, contact),
     )
 
 
@@ -186,12 +200,20 @@ def _named(
     }
 
 
-def _warnings(scene: Scene) -> tuple[str, ...]:
+def _warnings(scene: Scene, contact: Mapping[str, Any]) -> tuple[str, ...]:
     pinned = [t.axis for t in scene.terms if isinstance(t, Centroid) and t.axis not in scene.hold]
     texts = list(scene.warnings)
     if pinned:
         texts.append(
             f"neutral rigid translations along {', '.join(pinned)} are pinned by holding the "
             "centroid"
+        )
+    on_top = isinstance(scene.substrate, (Sphere, SphereLattice, Spheres))
+    alone = on_top and not scene.hold and contact.get("wet_solids") == 1
+    if alone and scene.kind == "sessile_droplet" and scene.sector.mirrored == "xy":
+        texts.append(
+            "a droplet on one sphere "
+            + ("slides off it" if any(scene.acceleration) else "rolls on it freely")
+            + f": that motion is not in the {scene.sector.model} model, whose stability is judged"
         )
     return tuple(texts)

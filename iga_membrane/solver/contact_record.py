@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..solids import SphereLattice, Spheres
-from ..terms import LineTerm, PlaneContactLine, SphereContactLine
+from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line, vertical_forces
@@ -33,7 +34,7 @@ def contact_record(
     line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
     if line is None:
         return {}
-    unit = scale.length
+    unit, pulls = scale.length, []
     if isinstance(line, PlaneContactLine):
         body = assembly.density(result.multipliers)
         at = contact_line(surface, line.edge)
@@ -41,21 +42,41 @@ def contact_record(
         support, solids = forces.push - forces.line, 1
     else:
         pulls = [
-            pull_on_sphere(scene, assembly, surface, result.multipliers, which).total[2]
+            pull_on_sphere(scene, assembly, surface, result.multipliers, which).total
             for which in range(max(1, len(sphere_lines(scene))))
         ]
-        support, solids = -float(sum(pulls)), len(pulls)
-    if isinstance(line, SphereContactLine):
-        unit *= line.sphere.radius
+        support, solids = -float(np.sum(pulls, axis=0)[2]), len(pulls)
     wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
     rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
-    return {
+    alone: dict[str, Any] = {}
+    if isinstance(line, SphereContactLine):
+        unit *= line.sphere.radius
+        if isinstance(scene.substrate, (SphereLattice, Spheres)):
+            angle, center = found["contact_angle_measured"], np.array(line.sphere.center)
+            which = scene.substrate.nearest(scale.to_world(center)).which
+            row = _row(scale, which, center, pulls[0], wet, angle)
+            alone = {"law": "contact lines", "asperities": [row], "touches_base": False}
+    return alone | {
         "wet_solids": solids,
         "wet_area": wet,
         "wet_fraction": wet / (np.pi * rim**2),
         "max_penetration": checked.penetration * unit if checked else None,
         "deepest_point": _deepest(scene, checked),
         "support_force": support * scale.force,
+    }
+
+
+def _row(
+    scale: Scale, which: Index, center: Array, force: Array, wet: float, angle: float
+) -> dict[str, Any]:
+    """One wet asperity; ``wet`` and ``angle`` in the user's units, the rest in the scene's."""
+    return {
+        "index": int(which),
+        "center": scale.to_world(np.asarray(center)).tolist(),
+        "force": float(np.linalg.norm(force)) * scale.force,
+        "force_vector": (scale.axes @ force * scale.force).tolist(),
+        "wet_area": float(wet),
+        "contact_angle": float(angle),
     }
 
 
@@ -83,19 +104,11 @@ def _footing(
     if scene.particles and isinstance(scene.substrate, (SphereLattice, Spheres)):
         # the membrane's solid is a list of its own
         numbers = scene.substrate.nearest(scale.to_world(feet.centers)).which
+    wetted = feet.areas * scale.length**2
     rows = [
-        {
-            "index": int(which),
-            "center": scale.to_world(center).tolist(),
-            "force": float(np.linalg.norm(force)) * scale.force,
-            "force_vector": (scale.axes @ force * scale.force).tolist(),
-            "wet_area": float(area) * scale.length**2,
-            "contact_angle": float(angle),
-        }
-        for which, center, force, area, angle in zip(
-            numbers, feet.centers, feet.forces, feet.areas, feet.angles, strict=True
-        )
-        if which >= 0
+        _row(scale, *values)
+        for values in zip(numbers, feet.centers, feet.forces, wetted, feet.angles, strict=True)
+        if values[0] >= 0
     ]
     foot = np.pi * found["contact_radius"] ** 2 if "contact_radius" in found else 0.0
     wet = float(feet.areas.sum()) * scale.length**2

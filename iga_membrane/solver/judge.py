@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Plane, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import Centroid, Contact
 from .assembly import Assembly
@@ -98,7 +98,7 @@ def _tolerated_depth(scene: Scene) -> float:
     law = next((t for t in scene.terms if isinstance(t, Contact)), None)
     if law is not None:
         return law.depth
-    curved = isinstance(scene.substrate, Sphere)
+    curved = sphere_of(scene) is not None
     return TOLERANCE.indentation if curved else TOLERANCE.penetration
 
 
@@ -187,6 +187,31 @@ def contact_objection(
     return None
 
 
+def leaves_its_asperity(
+    scene: Scene, surface: Surface, status: Status, message: str
+) -> tuple[Status, str, str] | None:
+    """How a droplet ends that stood on one asperity of many, where it is not on it alone, or None.
+
+    Beyond its limit on that asperity there may be an equilibrium on several.
+    """
+    solid, own = scene.substrate, sphere_of(scene)
+    if own is None or not isinstance(solid, (SphereLattice, Spheres)):
+        return None
+    if status is Status.LIMIT_POINT:
+        said = f"the droplet does not stay on one asperity: {message}"
+        return Status.TOPOLOGY_CHANGE, "leaves its asperity", said
+    local = scene.units.local_solid(solid)
+    at = local.nearest(surface.grid(*SAMPLED, 1).position)
+    met = at.which[(at.gap < 0.0) & (at.which != local.nearest(np.array([own.center])).which)]
+    if status is not Status.CONVERGED_STABLE or not met.size:
+        return None
+    kind = "touches_base" if (met < 0).any() else "touches another asperity"
+    said = "the droplet that stood on one asperity has come down beside it"
+    return Status.TOPOLOGY_CHANGE, kind, said
+
+
+SAMPLED = 129, 129
+"""Points along both parameters at which a membrane is looked at."""
 NARROW = 0.02, 0.05
 """Width of a sheet over its rim's size, and gap between rim and particle over its radius, that
 leave no room for a sheet."""

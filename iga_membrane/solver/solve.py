@@ -67,10 +67,16 @@ def solve(
     started = process_time()
     if scene.free_particles is not None:
         return _delivered(_with_free_particles(scene, options, started), on_fail)
-    if scene.otherwise is not None and not (scene.ramp is not None and scene.ramp.asked):
-        return _delivered(_either(scene, scene.otherwise(), options, report), on_fail)
+    asked = scene.ramp is not None and scene.ramp.asked
+    if scene.otherwise is not None and not asked:
+        first = replace(scene, otherwise=None)
+        return _delivered(_either(first, scene.otherwise, FAILED, options, report), on_fail)
+    if scene.finer is not None and not asked:
+        first = replace(scene, finer=None)
+        coarse = frozenset({Status.UNDERRESOLVED})
+        return _delivered(_either(first, scene.finer, coarse, options, report), on_fail)
     _check_memory(scene, options)
-    if scene.ramp is not None and scene.ramp.asked:
+    if scene.ramp is not None and asked:
         solution = walk(scene.ramp, options, report)[-1]
         return _delivered(replace(solution, scene=scene), on_fail)
     halfway = options.start is not None and _halfway(scene, options)
@@ -108,24 +114,33 @@ DECIDED = frozenset(
     or status in (Status.NO_EQUILIBRIUM, Status.LIMIT_POINT, Status.TOPOLOGY_CHANGE)
 )
 """Ends of a solve that say something about the liquid, not about the discretization."""
+FAILED = frozenset(Status) - {Status.CONVERGED_STABLE, Status.INTERRUPTED, Status.UNVERIFIED}
 
 
 def _either(
-    scene: Scene, other: Scene, options: SolverOptions, report: Callable[[float], None]
+    first: Scene,
+    other: Callable[[], Scene],
+    ends: frozenset[Status],
+    options: SolverOptions,
+    report: Callable[[float], None],
 ) -> Solution:
     """A scene in the first of two discretizations that solves it, within one limit; if neither
-    does, the end that says more, with both messages and the bracket of either."""
-    first = replace(scene, otherwise=None)
+    does, the end that says more, with both messages and the bracket of either.
+
+    Parameters
+    ----------
+    ends : of the first one after which the other is tried.
+    """
     if options.start is not None and not fits(options.start, first):
-        return solve(other, options, on_fail="return", report=report)
+        return solve(other(), options, on_fail="return", report=report)
     started = process_time()
     one = solve(first, options, on_fail="return", report=report)
-    if one.success or one.status in (Status.INTERRUPTED, Status.UNVERIFIED):
+    if one.status not in ends:
         return one
     log.info("%s: %s; in another discretization", one.status.name, one.message)
     left = max(started + options.max_cpu_s - process_time(), 1e-3)
     own = replace(options, max_cpu_s=left, start=None)
-    two = solve(other, own, on_fail="return", report=report)
+    two = solve(other(), own, on_fail="return", report=report)
     told = two if two.status in DECIDED or one.status not in DECIDED else one
     found = with_effort(told, [one, two])
     if told.success:

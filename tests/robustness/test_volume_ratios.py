@@ -1,0 +1,70 @@
+"""Droplets from a millionth to a billion times the size of an asperity."""
+
+import numpy as np
+import pytest
+
+import iga_membrane as iga
+from iga_membrane.reference import drop_on_plane
+
+WATER = {"volume": 4.0 * np.pi / 3.0, "liquid": iga.Liquid(1.0, 1.0), "gravity": 1.0}
+
+
+def on_lattice(angle, ratio, pitch=4.0, **more):
+    r = ratio ** (-1.0 / 3.0)
+    return iga.sessile_droplet(iga.SphereLattice(angle, r, pitch * r), **WATER, **more)
+
+
+@pytest.mark.parametrize("angle", [60.0, 90.0, 150.0])
+def test_a_droplet_a_millionth_of_an_asperity_is_that_on_a_plane(angle):
+    found = iga.solve(on_lattice(angle, 1e-6))
+    flat = drop_on_plane(1.0, angle)
+    for name in ("height", "contact_radius"):
+        assert found.measures[name] == pytest.approx(flat[name], rel=1e-2)
+    (spot,) = found.contact["asperities"]
+    assert spot["force_vector"] == pytest.approx([0.0, 0.0, -WATER["volume"]], abs=1e-6)
+    assert spot["contact_angle"] == pytest.approx(angle, abs=0.01)
+    assert any("slides off" in text for text in found.warnings)
+
+
+def test_one_asperity_of_many_is_the_same_sphere():
+    alone = iga.solve(iga.sessile_droplet(iga.Sphere(150.0, 1.0, (0.0, 0.0, -1.0)), **WATER))
+    found = iga.solve(on_lattice(150.0, 1.0))
+    for name in ("energy", "height", "pressure", "contact_radius"):
+        assert found.measures[name] == alone.measures[name]
+    assert found.contact["wet_area"] == alone.contact["wet_area"]
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1.0])
+def test_a_mesh_too_coarse_for_large_asperities_is_refined(ratio):
+    found = iga.solve(on_lattice(180.0, ratio))
+    assert found.contact["wet_solids"] == 1
+    assert found.contact["support_force"] == pytest.approx(WATER["volume"], rel=1e-3)
+    assert any("slides off" in text for text in found.warnings)
+
+
+def test_a_droplet_that_spreads_to_other_asperities_is_not_on_one_alone():
+    scene = on_lattice(150.0, 8.0, pitch=2.2, contact_line="conforming")
+    found = iga.solve(scene, on_fail="return")
+    assert found.status is iga.Status.TOPOLOGY_CHANGE
+    assert found.kind == "touches another asperity"
+
+
+@pytest.mark.slow
+def test_no_limit_is_claimed_for_a_droplet_that_only_leaves_its_asperity():
+    found = iga.solve(on_lattice(90.0, 8.0, contact_line="conforming"), on_fail="return")
+    assert found.status is iga.Status.TOPOLOGY_CHANGE
+    assert found.kind == "leaves its asperity"
+    assert found.bracket.parameter == "gravity.acceleration"
+    assert 0.5 < found.bracket.lo < found.bracket.hi < 0.7
+
+
+@pytest.mark.parametrize("offset", [(0.2, 0.0), (5.0, 5.0)])
+def test_a_conforming_line_needs_an_asperity_at_the_origin(offset):
+    lattice = iga.SphereLattice(150.0, 5.0, 12.0, offset=offset)
+    with pytest.raises(iga.SceneError, match="whose top is the origin"):
+        iga.sessile_droplet(lattice, **WATER, contact_line="conforming")
+
+
+def test_asperities_too_small_to_resolve_are_refused_by_name():
+    with pytest.raises(iga.SceneError, match=r"substrate\.radius.*larger asperities"):
+        on_lattice(150.0, 1e9)
