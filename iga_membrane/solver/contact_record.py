@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Index
+from ..arrays import Array
 from ..scenes.scene import Scene
 from ..solids import SphereLattice, Spheres
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
@@ -16,6 +16,7 @@ from .audit import Audit
 from .contact_line import contact_line, vertical_forces
 from .footing import footing, touches_base
 from .forces import pull_on_sphere, sphere_lines
+from .measures import own_asperity
 from .newton import NewtonResult
 
 
@@ -51,10 +52,10 @@ def contact_record(
     alone: dict[str, Any] = {}
     if isinstance(line, SphereContactLine):
         unit *= line.sphere.radius
-        if isinstance(scene.substrate, (SphereLattice, Spheres)):
+        own = own_asperity(scene)
+        if own is not None:
             angle, center = found["contact_angle_measured"], np.array(line.sphere.center)
-            which = scene.substrate.nearest(scale.to_world(center)).which
-            row = _row(scale, which, center, pulls[0], wet, angle)
+            row = _row(scale, own, center, pulls[0], wet, angle)
             alone = {"law": "contact lines", "asperities": [row], "touches_base": False}
     return alone | {
         "wet_solids": solids,
@@ -67,12 +68,12 @@ def contact_record(
 
 
 def _row(
-    scale: Scale, which: Index, center: Array, force: Array, wet: float, angle: float
+    scale: Scale, which: int, center: Array, force: Array, wet: float, angle: float
 ) -> dict[str, Any]:
     """One wet asperity; ``wet`` and ``angle`` in the user's units, the rest in the scene's."""
     return {
         "index": int(which),
-        "center": scale.to_world(np.asarray(center)).tolist(),
+        "center": scale.to_world(center).tolist(),
         "force": float(np.linalg.norm(force)) * scale.force,
         "force_vector": (scale.axes @ force * scale.force).tolist(),
         "wet_area": float(wet),

@@ -15,7 +15,7 @@ from .assembly import Assembly
 from .audit import Audit
 from .contact_line import contact_line
 from .footing import contacts, engulfed, touches_base, unsupported
-from .measures import sphere_of
+from .measures import own_asperity, sphere_of
 from .stability import Stability
 from .status import Status
 
@@ -194,15 +194,15 @@ def leaves_its_asperity(
 
     Beyond its limit on that asperity there may be an equilibrium on several.
     """
-    solid, own = scene.substrate, sphere_of(scene)
-    if own is None or not isinstance(solid, (SphereLattice, Spheres)):
+    own = own_asperity(scene)
+    if own is None:
         return None
     if status is Status.LIMIT_POINT:
         said = f"the droplet does not stay on one asperity: {message}"
         return Status.TOPOLOGY_CHANGE, "leaves its asperity", said
-    local = scene.units.local_solid(solid)
-    at = local.nearest(surface.grid(*SAMPLED, 1).position)
-    met = at.which[(at.gap < 0.0) & (at.which != local.nearest(np.array([own.center])).which)]
+    assert scene.substrate is not None
+    at = scene.units.local_solid(scene.substrate).nearest(surface.grid(*SAMPLED, 1).position)
+    met = at.which[(at.gap < 0.0) & (at.which != own)]
     if status is not Status.CONVERGED_STABLE or not met.size:
         return None
     kind = "touches_base" if (met < 0).any() else "touches another asperity"

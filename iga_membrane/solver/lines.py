@@ -13,6 +13,7 @@ from ..surface.surface import Surface
 from ..terms import PlaneContactLine, SphereContactLine, TrimmedContactLine
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line, trimmed_line
+from .measures import own_asperity
 from .solution import Solution
 
 
@@ -58,7 +59,9 @@ def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     for term in scene.local_terms():
         if isinstance(term, SphereContactLine):
             line = contact_line(surface, term.edge, solid=term.sphere)
-            found.append(LineOnSolid(sum(each.solid >= 0 for each in found), line))
+            alone = own_asperity(scene)
+            number = sum(each.solid >= 0 for each in found) if alone is None else alone
+            found.append(LineOnSolid(number, line))
         elif isinstance(term, PlaneContactLine):
             found.append(LineOnSolid(-1, contact_line(surface, term.edge)))
     return tuple(LineOnSolid(each.solid, _world(scene, each.line)) for each in found)

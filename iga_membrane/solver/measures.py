@@ -329,6 +329,14 @@ def sphere_of(scene: Scene) -> Sphere | None:
     return None
 
 
+def own_asperity(scene: Scene) -> int | None:
+    """Number of the asperity, one of many, on which alone a droplet ends; else None."""
+    solid, own = scene.substrate, sphere_of(scene)
+    if own is None or not isinstance(solid, (SphereLattice, Spheres)):
+        return None
+    return int(solid.nearest(scene.units.to_world(np.array(own.center))).which)
+
+
 def _film(surface: Surface, body: BodyDensity, scale: Scale) -> dict[str, float]:
     """Neck, pull on the rings and slope at them; the tension is 1 in the scene's scale."""
     ring = surface.space.bases[0]

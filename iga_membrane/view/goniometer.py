@@ -13,6 +13,7 @@ from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..solver.apparent import profile
 from ..solver.lines import contact_lines
+from ..solver.measures import own_asperity
 from .fields import solids
 from .figure import figure, write_figure
 from .mesh import membrane, outside, trimming_solid
@@ -62,7 +63,8 @@ def plot_side(
             f"plot_side: what a goniometer sees on {type(scene.substrate).__name__} is not known; "
             "take plot or plot_section"
         )
-    rough = isinstance(scene.substrate, (SphereLattice, Spheres))
+    alone = own_asperity(scene) is not None
+    rough = isinstance(scene.substrate, (SphereLattice, Spheres)) and not alone
     if rough and scene.lateral_load:
         raise SceneError("plot_side: a leaning droplet on asperities has no apparent angle")
     made, axes = figure(path)

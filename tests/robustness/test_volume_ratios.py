@@ -32,6 +32,8 @@ def test_one_asperity_of_many_is_the_same_sphere():
     for name in ("energy", "height", "pressure", "contact_radius"):
         assert found.measures[name] == alone.measures[name]
     assert found.contact["wet_area"] == alone.contact["wet_area"]
+    (line,) = iga.contact_lines(found)
+    assert line.solid == found.contact["asperities"][0]["index"]
 
 
 @pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1.0])
