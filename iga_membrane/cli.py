@@ -17,7 +17,7 @@ from .errors import GeometryError, OutputError, SceneError, StateError
 from .files import check_folder, previous
 from .progress import bar, iterations
 from .progress import log as progress_log
-from .scenes.scene_file import load_scene, read_tables
+from .scenes.scene_file import load_scene
 from .solver.options import SolverOptions
 from .solver.solution import Solution
 from .solver.solve import solve
@@ -105,10 +105,12 @@ def _info(given: argparse.Namespace) -> int:
     if path.suffix == ".npz":
         _say(_load(path).summary())
         return SOLVED
-    record = _json(path)
+    from .solver.result_file import read_result
+
+    record = read_result(path)
     lines = [f"{record['status']}: {record.get('message')}"]
     for part in ("measures", "dimensionless"):
-        lines += [f"  {name:<24}{value!r:>24}" for name, value in record.get(part, {}).items()]
+        lines += [f"  {name:<24}{value!r:>24}" for name, value in record[part].items()]
     _say("\n".join(lines))
     return SOLVED
 
@@ -170,16 +172,6 @@ def _result_of(path: Path) -> Path:
     if found is None:
         raise StateError(f"{path}: holds neither {' nor '.join(names)}")
     return found
-
-
-def _json(path: Path) -> dict[str, Any]:
-    try:
-        record = read_tables(path)
-    except SceneError as error:
-        raise StateError(str(error)) from error
-    if not isinstance(record, dict) or "status" not in record:
-        raise StateError(f"{path}: not a result file of iga_membrane")
-    return record
 
 
 def _say(text: str) -> None:

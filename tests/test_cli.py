@@ -4,6 +4,8 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
+import time
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from helpers import droplet_file
 
 import iga_membrane as iga
 from iga_membrane.cli import main
+from iga_membrane.view.export import WRITERS
 
 SCENE = droplet_file(150.0, 1.0, degree=3, elements=8)
 
@@ -59,9 +62,29 @@ def test_a_failed_solve_exits_3_and_still_writes_its_result(scene, tmp_path):
 
 
 def test_an_output_that_cannot_be_written_exits_4_before_computing(scene, tmp_path, monkeypatch):
+    """S4: under a regular file, which stops the superuser too."""
     (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr("iga_membrane.cli.solve", lambda *a, **k: pytest.fail("computed"))
-    assert main(["solve", str(scene), "--out", str(tmp_path / "file" / "out")]) == 4
+    over = '[[over]]\nparameter = "substrate.contact_angle"\nvalues = [60, 90]\n'
+    (tmp_path / "sweep.toml").write_text(scene.read_text() + over)
+    for name in ("cli.solve", "analysis.sweep.sweep", "solver.state.load"):
+        monkeypatch.setattr(f"iga_membrane.{name}", lambda *a, **k: pytest.fail("computed"))
+    out, started = str(tmp_path / "file" / "out"), time.process_time()
+    assert main(["solve", str(scene), "--out", out]) == 4
+    assert main(["sweep", str(tmp_path / "sweep.toml"), "--out", out]) == 4
+    assert main(["export", str(tmp_path), f"{out}/drop.stl"]) == 4
+    assert main(["plot", str(tmp_path), "--out", f"{out}/drop.png"]) == 4
+    assert time.process_time() - started <= 1.0
+
+
+def test_an_output_never_leaves_its_folder_by_a_link(scene, tmp_path):
+    """X4: a link where a file is to be written is replaced, not followed."""
+    (tmp_path / "victim").write_text("mine")
+    (tmp_path / "out").mkdir()
+    for name in ("result.json", "state.npz"):
+        (tmp_path / "out" / name).symlink_to(tmp_path / "victim")
+    assert main(["solve", str(scene), "--out", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "victim").read_text() == "mine"
+    assert not (tmp_path / "out" / "state.npz").is_symlink()
 
 
 def test_an_interrupt_exits_130(scene, tmp_path, monkeypatch):
@@ -73,14 +96,23 @@ def test_an_interrupt_exits_130(scene, tmp_path, monkeypatch):
 
 
 def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
+    """S3, every kind of file: written to a device that is always full."""
     solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
-    path = tmp_path / "result.json"
-    path.write_text("old")
-    monkeypatch.setattr(os, "fsync", lambda handle: (_ for _ in ()).throw(OSError(28, "full")))
-    with pytest.raises(iga.OutputError, match=r"result\.json"):
-        solution.save(path)
-    assert path.read_text() == "old"
-    assert [p.name for p in tmp_path.iterdir()] == ["result.json"]
+    endings = [ending for ending in WRITERS if ending not in (".png", ".forces.csv")]
+
+    def on_a_full_device(suffix, prefix, folder):
+        name = f"{folder}/{prefix}{suffix}"
+        os.symlink("/dev/full", name)
+        return os.open(name, os.O_WRONLY), name
+
+    monkeypatch.setattr(tempfile, "mkstemp", on_a_full_device)
+    for ending in endings:
+        path = tmp_path / f"drop{ending}"
+        path.write_text("old")
+        with pytest.raises(iga.OutputError, match=f"{ending}: cannot be written"):
+            solution.save(path)
+        assert path.read_text() == "old"
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted(f"drop{e}" for e in endings)
 
 
 def test_an_unknown_ending_is_refused(tmp_path):

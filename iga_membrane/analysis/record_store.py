@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from ..errors import OutputError
 from ..files import check_folder, write_whole
 from ..records import digest
 
@@ -68,9 +69,19 @@ class RecordStore:
         self.release(key)
 
     def claim(self, key: str) -> bool:
-        """Whether this process may compute a point."""
+        """Whether this process may compute a point.
+
+        Raises
+        ------
+        OutputError
+            If the claim cannot be written.
+        """
         path, mine = self._claim(key), self.folder / f".{key}.{os.getpid()}"
-        mine.write_text(this_process(), encoding="utf-8")
+        try:
+            mine.write_text(this_process(), encoding="utf-8")
+        except OSError as error:
+            mine.unlink(missing_ok=True)
+            raise OutputError(f"{mine}: cannot be written ({error})") from error
         try:
             if _abandoned(path, mine.stat().st_mtime):
                 # of those that see a dead claim one renames it away

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..checks import record
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
@@ -63,7 +64,10 @@ class Ramp:
         return float(np.interp(load, self.stops, self.values))
 
     def __call__(self, load: float) -> Scene:
-        return self.scene_at(self.value(load))
+        value = self.value(load)
+        scene = self.scene_at(value)
+        record(f"scene_at({value:g})", scene, Scene)
+        return scene
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import choice, number, vector
+from ..checks import choice, contact_angle, number, vector
 from ..errors import SceneError
 from ..solids import MOTIONS, Plane, Sphere, SphereLattice, Spheres
 from .asperities import STARTS
@@ -208,9 +208,9 @@ def _particle(field: str, given: Mapping[str, Any]) -> Sphere:
         if key not in given:
             raise SceneError(f"{field}.{key}: missing; a particle needs it")
     return Sphere(
-        given["contact_angle"],
+        contact_angle(f"{field}.contact_angle", given["contact_angle"]),
         given["radius"],
-        given["center"],
+        vector(f"{field}.center", given["center"]),
         given.get("density", 0.0),
         choice(f"{field}.motion", given.get("motion", "fixed"), MOTIONS),
     )

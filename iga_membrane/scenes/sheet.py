@@ -274,7 +274,7 @@ def _check_place(particle: Sphere, size: float, boundary: str) -> None:
     reach = max(abs(x), abs(y)) if boundary == "square" else float(np.hypot(x, y))
     if reach >= 0.5 * size:
         raise SceneError(
-            f"particle.center = {list(particle.center)}: must lie inside the rim, less than "
+            f"particle[0].center = {list(particle.center)}: must lie inside the rim, less than "
             f"{0.5 * size:g} from its middle"
         )
 

@@ -19,7 +19,15 @@ from ..surface.surface import Surface
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .liquid import Liquid, Mesh
 from .question import BALL, Foot, Question, sector_of
-from .start import STEEPEST, Pancake, check_net, drop_on_sphere, least_energy_pancake, rounded
+from .start import (
+    STEEPEST,
+    Pancake,
+    check_clear,
+    check_net,
+    drop_on_sphere,
+    least_energy_pancake,
+    rounded,
+)
 
 
 def on_a_line(parts: Question) -> Foot:
@@ -148,10 +156,4 @@ def _start(foot: Rest, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
 
 def _check_start(start: Surface, mesh: Mesh, substrate: Plane | Sphere) -> None:
     check_net(start, drop_space(mesh.space, mesh.degree, mesh.elements))
-    table = start.space.table(2)
-    depth = -float(substrate.gap(start.on(table).position).min())
-    if depth > 1e-6 * start.size:
-        raise SceneError(
-            f"start: the surface lies up to {depth:g} below the substrate (solid 0); lift it by at "
-            f"least {depth:g} along the solid's normal"
-        )
+    check_clear(start, substrate, 1e-6 * start.size)

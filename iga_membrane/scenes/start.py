@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Sphere
+from ..solids import Solid, Sphere
 from ..splines import Space
 from ..splines.quadrature import gauss
 from ..surface.surface import Surface
@@ -302,6 +302,27 @@ def check_net(start: Surface, asked: Space) -> None:
         raise SceneError(
             f"start: control net {given.net_shape} of degree {given.degree} given, "
             f"{asked.net_shape} of degree {asked.degree} expected from the discretization"
+        )
+
+
+def check_clear(start: Surface, solid: Solid, allowed: float) -> None:
+    """Refuse a start that lies deeper in its solid than allowed.
+
+    Raises
+    ------
+    SceneError
+        With the depth, the body's number (0 for a plane), the place and the way out.
+    """
+    points = start.on(start.space.table(2)).position.reshape(-1, 3)
+    at = solid.nearest(points)
+    deepest = int(np.argmin(at.gap))
+    depth, which = -float(at.gap[deepest]), max(int(at.which[deepest]), 0)
+    if depth > allowed:
+        x, y, z = points[deepest]
+        raise SceneError(
+            f"start: the surface lies up to {depth:g} below the substrate (solid {which}) at "
+            f"[{x:g}, {y:g}, {z:g}]; lift it by at least {depth - allowed:g} along the solid's "
+            "normal"
         )
 
 

@@ -17,10 +17,13 @@ from .asperities import ball, fine_at, smallest_model, whole_skin
 from .liquid import MODELS, Liquid, space_name
 from .pattern import Pattern, cell_of
 from .question import BALL, Foot, Question, sector_of
-from .start import drop_on_sphere
+from .start import check_clear, drop_on_sphere
 
 COARSEST = 0.2
 """Length over that of the drop which the mesh resolves on large spheres too."""
+
+DEEPEST = 0.5
+"""Depth of a start in a solid over the solid's scale up to which contact pushes it out again."""
 
 
 def on_an_area(parts: Question) -> Foot:
@@ -66,6 +69,7 @@ def on_an_area(parts: Question) -> Foot:
     surface = Surface(skin.space, scale.to_world(skin.points))
     if isinstance(parts.start, Surface):
         surface = surface.moved(parts.start.points)
+        check_clear(surface, substrate, DEEPEST * min(substrate.scale, scale.length))
     sector = Sector(model)
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
     # contact lines lie in the part of the membrane that takes no part in shifts

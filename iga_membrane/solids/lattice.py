@@ -259,8 +259,8 @@ def _each(field: str, value: float | Sequence[float] | Array, count: int) -> Arr
         values = np.array([number(f"{field}[{i}]", v) for i, v in enumerate(value)])  # type: ignore[arg-type]
     if values.shape != (count,):
         raise SceneError(
-            f"{field}: an array of shape {values.shape} given for {count} spheres; one number or "
-            "one per sphere"
+            f"{field}: an array of shape {values.shape} given for {count} spheres; one number "
+            "or one per sphere is needed"
         )
     return values
 

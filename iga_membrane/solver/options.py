@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..checks import flag, integer, number
 from ..errors import SceneError
+from ..files import check_folder
 
 ON_FAIL = ("raise", "return")
 """What to do with a solution that is no success."""
@@ -27,7 +28,8 @@ class SolverOptions:
     max_memory_gb : a scene whose matrices would need more is refused.
     audit : whether to check the result on an independent path; without it, UNVERIFIED.
     start : a state file to start from, or to go on from where a path of loads was interrupted.
-    checkpoint : a state file to be written after every converged load step.
+    checkpoint : a state file to be written after every converged load step. Its folder is checked
+        before any work; a disk that fills up later is a warning, and the step before stays.
     """
 
     tolerance: float = 1e-8
@@ -53,6 +55,16 @@ class SolverOptions:
             path = getattr(self, name)
             if path is not None and Path(path).suffix != ".npz":
                 raise SceneError(f"solver.{name} = {str(path)!r}: must be a state file, .npz")
+
+    def check_folder(self) -> None:
+        """Make the folder of the checkpoint and prove that it can be written.
+
+        Raises
+        ------
+        OutputError
+        """
+        if self.checkpoint is not None:
+            check_folder(Path(self.checkpoint).parent)
 
     def numerical(self) -> SolverOptions:
         """The choices that change numbers, without files and limits."""

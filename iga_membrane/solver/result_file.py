@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .. import __version__
-from ..scenes.scene_file import SCHEMA
+from ..errors import SceneError, StateError
+from ..scenes.scene_file import SCHEMA, read_tables
 from .forces import ParticleForces
 from .load_stepping import LoadStep
 from .solution import Solution
@@ -106,3 +108,28 @@ def _finite(value: Any) -> Any:
     if isinstance(value, (float, np.floating)):
         return float(value) if math.isfinite(value) else None
     return value
+
+
+def read_result(path: Path) -> dict[str, Any]:
+    """The record in a result file.
+
+    Raises
+    ------
+    StateError
+        Not readable, not a result file, or of another version.
+    """
+    try:
+        record = read_tables(path)
+    except SceneError as error:
+        raise StateError(str(error)) from error
+    kinds = {"status": str, "measures": dict, "dimensionless": dict}
+    if not isinstance(record, dict) or any(
+        not isinstance(record.get(name), kind) for name, kind in kinds.items()
+    ):
+        raise StateError(f"{path}: not a result file of iga_membrane")
+    if record.get("schema") != SCHEMA:
+        raise StateError(
+            f"{path}: schema {record.get('schema')!r}, this version reads schema {SCHEMA}: read "
+            "the file with the version that wrote it"
+        )
+    return dict(record)

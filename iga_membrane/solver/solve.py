@@ -63,6 +63,7 @@ def solve(
     options = options or SolverOptions()
     record("options", options, SolverOptions)
     choice("on_fail", on_fail, ON_FAIL)
+    options.check_folder()
     started = process_time()
     if scene.free_particles is not None:
         return _delivered(_with_free_particles(scene, options, started), on_fail)

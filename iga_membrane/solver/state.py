@@ -9,7 +9,7 @@ from typing import Any
 
 from .. import __version__
 from ..checks import record
-from ..errors import SceneError, StateError
+from ..errors import OutputError, SceneError, StateError
 from ..files import previous, read_arrays, write_arrays
 from ..records import decode, digest, encode
 from ..scenes.scene import Ramp, Scene
@@ -69,8 +69,12 @@ def journal_of(ramp: Ramp, options: SolverOptions) -> Journal:
     place = options.checkpoint
 
     def write(progress: Progress) -> None:
-        if place is not None:
+        if place is None:
+            return
+        try:
             write_state(Path(place), progress, keep=True)
+        except OutputError as error:  # a full disk does not end a solve; the one before stays
+            log.warning("%s; going on without this checkpoint", error)
 
     return Journal(mark, write, _progress(options.start, mark))
 

@@ -106,12 +106,16 @@ def trace(
         Fewer than two values, too many, or one that is not a number.
     StateError
         If ``options.start`` is not the state of this path.
+    OutputError
+        If the folder of ``options.checkpoint`` cannot be written; before any work.
     SolveError
     """
     choice("on_fail", on_fail, ON_FAIL)
     checked = path_values("values", values)
     ramp = Ramp(parameter, checked, scene_at, asked=True)
-    found = walk(ramp, options or SolverOptions(), report)
+    options = options or SolverOptions()
+    options.check_folder()
+    found = walk(ramp, options, report)
     reached = [s for s in found if s.success]
     path = Path(parameter, checked[: len(reached)], reached, found[-1])
     if not path.success and on_fail == "raise":

@@ -82,10 +82,19 @@ def to_geomdl(surface: Surface) -> Any:
 
 
 def write_geomdl(surface: Surface, path: str) -> None:
-    """Write a surface as JSON that ``geomdl.exchange.import_json`` reads."""
-    from geomdl import exchange
+    """Write a surface as JSON that ``geomdl.exchange.import_json`` reads.
 
-    exchange.export_json(to_geomdl(surface), path)
+    Raises
+    ------
+    OSError
+    """
+    from geomdl import exchange
+    from geomdl.exceptions import GeomdlException
+
+    try:
+        exchange.export_json(to_geomdl(surface), path)
+    except GeomdlException as error:  # what it makes of a full disk
+        raise OSError(str(error)) from error
 
 
 def _bezier_points(surface: Surface) -> tuple[Array, Array]:

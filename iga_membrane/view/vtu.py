@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -64,6 +65,8 @@ def write_vtu(solution: Solution, path: str) -> None:
     are right at ``degree + 1`` points in each direction of every cell. A gap is left out where
     there is no solid.
     """
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
     made = grid(solution.surface)
     xi, to_coefficients = _sampling(solution.surface)
     at = solution.surface.at(xi)
@@ -71,7 +74,12 @@ def write_vtu(solution: Solution, path: str) -> None:
         values = field(solution, name, at)
         if np.isfinite(values).all():
             made.point_data[name] = to_coefficients(values)
-    made.save(path)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(made)
+    writer.SetDataModeToBinary()
+    writer.SetWriteToOutputString(True)  # VTK's own way to the file crashes on a full disk
+    writer.Write()
+    Path(path).write_text(writer.GetOutputString(), encoding="utf-8")
 
 
 def _sampling(surface: Surface) -> tuple[Array, Any]:

@@ -1,6 +1,7 @@
 """Going on: load stepping from where it was interrupted, and solves from a saved state (S2-S5)."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from helpers import droplet, droplet_file, path_file
 
 import iga_membrane as iga
 from iga_membrane.cli import main
+from iga_membrane.solver.assembly import Assembly
 
 
 def angles(options=None, on_fail="raise", report=lambda load: None):
@@ -117,6 +119,41 @@ def test_a_damaged_checkpoint_goes_on_from_the_one_before(tmp_path, caplog):
     (tmp_path / "state.previous.npz").unlink()
     state.write_bytes(data)
     with pytest.raises(iga.StateError, match="corrupt"):
+        angles(replace(options, start=state))
+
+
+def test_a_full_disk_does_not_end_a_path(tmp_path, monkeypatch, caplog):
+    """S3: the step before stays on the disk, and the result comes back."""
+    state = tmp_path / "state.npz"
+    options = iga.SolverOptions(checkpoint=state)
+    with pytest.raises(Killed):
+        angles(options, report=killed_after(2))
+    before = state.read_bytes()
+    monkeypatch.setattr(os, "fsync", lambda handle: (_ for _ in ()).throw(OSError(28, "full")))
+    assert angles(options).success
+    assert "cannot be written ([Errno 28] full); going on without this checkpoint" in caplog.text
+    assert state.read_bytes() == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["state.npz", "state.previous.npz"]
+
+
+@pytest.mark.parametrize("ask", [iga.solve, lambda scene, options: angles(options)])
+def test_a_checkpoint_that_cannot_be_written_is_named_before_any_work(tmp_path, ask, monkeypatch):
+    """S4"""
+    (tmp_path / "file").write_text("in the way")
+    scene = droplet(120, 1.0, elements=8)
+    monkeypatch.setattr(Assembly, "__init__", lambda *a, **k: pytest.fail("computed"))
+    with pytest.raises(iga.OutputError, match="cannot be written"):
+        ask(scene, iga.SolverOptions(checkpoint=tmp_path / "file" / "out" / "state.npz"))
+
+
+def test_a_checkpoint_of_another_version_is_refused(tmp_path, monkeypatch):
+    """S11"""
+    state = tmp_path / "state.npz"
+    options = iga.SolverOptions(checkpoint=state)
+    with pytest.raises(Killed):
+        angles(options, report=killed_after(2))
+    monkeypatch.setattr("iga_membrane.solver.state.__version__", "999")
+    with pytest.raises(iga.StateError, match="not the state of this path"):
         angles(replace(options, start=state))
 
 

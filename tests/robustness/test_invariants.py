@@ -31,6 +31,31 @@ def test_the_wet_area_falls_with_the_contact_angle(bond):
     assert (np.diff(wet) < 0).all()
 
 
+def test_the_order_of_asperities_does_not_matter():
+    """Q4"""
+    places = (-1.05, -0.35, 0.35, 1.05)
+    rows = np.array([[x, y, -0.3] for x in places for y in places])
+
+    def on(centers):
+        spheres = iga.Spheres(180.0, centers, 0.3)
+        mesh = iga.Discretization(elements=24)
+        return iga.solve(
+            iga.sessile_droplet(spheres, volume=4.0, gravity=1.0, discretization=mesh),
+            on_fail="return",
+        )
+
+    one, two = on(rows), on(np.random.default_rng(5).permutation(rows))
+    assert one.status is two.status
+    for name in ("energy", "pressure", "height", "A_LG", "A_wet"):
+        assert two.measures[name] == pytest.approx(one.measures[name], rel=1e-12), name
+    forces = [
+        sorted((*np.round(row["center"], 9), row["force"]) for row in s.contact["asperities"])
+        for s in (one, two)
+    ]
+    assert len(forces[0]) >= 4
+    assert np.array(forces[1]) == pytest.approx(np.array(forces[0]), rel=1e-10, abs=1e-12)
+
+
 def test_contact_forces_only_push():
     """Q17: every asperity is pressed, never pulled."""
     lattice = iga.SphereLattice(180.0, 0.25, 0.7)

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import re
 import time
 import tomllib
 
@@ -13,7 +14,6 @@ from hypothesis import strategies as st
 
 import iga_membrane as iga
 from iga_membrane.cli import main
-from iga_membrane.scenes.scene_keys import KEYS
 
 GOOD = {
     "scene": "sessile_droplet",
@@ -37,10 +37,10 @@ def changed(path, value):
 
 
 def refusal(data):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(iga.SceneError) as caught:
         iga.read_scene(data)
-    assert time.perf_counter() - start < 0.5
+    assert time.process_time() - start < 0.05
     return str(caught.value)
 
 
@@ -75,7 +75,8 @@ def test_the_good_scene_is_read():
         ("solver.stabilization", -0.1, "stabilization must be > 0"),
         ("droplet.hold", "yx", "must be one of"),
         ("scene", "sesile_droplet", 'did you mean "sessile_droplet"'),
-        ("schema", 2, "schema 1"),
+        ("schema", 2, "schema = 2: this version reads schema 1; leave the key out or convert"),
+        ("schema", 0, "schema = 0: this version reads schema 1"),
         ("particle", {"radius": 1.0}, "list of tables"),
     ],
 )
@@ -95,28 +96,6 @@ def test_text_is_never_read_as_a_number(path, text):
     message = refusal(changed(path, text))
     assert path in message
     assert "text is not read as a number" in message
-
-
-NUMBERS = [
-    f"{table}.{key}"
-    for table in ("liquid", "gravity", "substrate", "sheet", "cell", "rings", "discretization",
-                  "solver")
-    for key in KEYS[table]
-    if key not in ("kind", "arrangement", "boundary", "shape", "space", "model", "motion",
-                   "contact", "contact_line", "start", "liquid_weight")
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("path", NUMBERS)
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
-def test_numbers_that_are_not_finite_are_refused(path, value):
-    assert path.split(".")[-1] in refusal(changed(path, value))
-
-
-@pytest.mark.parametrize("path", NUMBERS)
-@pytest.mark.parametrize("value", ["1", True, None, {}, 1e400, [[]]])
-def test_wrong_types_are_refused(path, value):
-    assert path.split(".")[-1] in refusal(changed(path, value))
 
 
 @pytest.mark.parametrize(
@@ -184,16 +163,41 @@ def test_a_model_with_a_mirror_that_gravity_lacks_is_refused():
     assert iga.read_scene(data).scene.sector.model == "half"
 
 
-def test_an_angle_in_radians_gets_a_hint_not_an_error():
-    scene = iga.read_scene(changed("substrate.contact_angle", 2.6)).scene
+@pytest.mark.parametrize("angle", [1e-3, 1.0, 2.6, 3.14159])
+def test_an_angle_in_radians_gets_a_hint_not_an_error(angle):
+    scene = iga.read_scene(changed("substrate.contact_angle", angle)).scene
     assert "degrees?" in scene.warnings[0]
 
 
-def test_a_start_below_the_plane_is_refused_with_depth_and_lift():
-    plane = iga.Plane(contact_angle=120)
-    start = iga.sessile_droplet(plane, volume=1.0).surface.transformed(shift=[0, 0, -0.25])
-    with pytest.raises(iga.SceneError, match=r"up to 0\.2.* below .*solid 0.*lift it by"):
-        iga.sessile_droplet(plane, volume=1.0, start=start)
+def test_an_angle_that_can_only_be_degrees_gets_no_hint():
+    assert not iga.read_scene(changed("substrate.contact_angle", 3.15)).scene.warnings
+
+
+ROW = [[-1.5, 0.0, -0.5], [1.5, 0.0, -0.5], [0.0, 0.0, -0.5]]
+
+
+@pytest.mark.parametrize(
+    ("substrate", "down", "body"),
+    [
+        (iga.Plane(120), 0.25, "0"),
+        (iga.Plane(150), 0.05, "0"),
+        (iga.Sphere(120, 1.0, (0.0, 0.0, -1.0)), 0.3, "0"),
+        (iga.Spheres(180, ROW, 0.5), 0.4, "2"),
+        (iga.SphereLattice(180, 0.4, 1.2), 0.4, r"\d+"),
+    ],
+)
+def test_a_start_below_the_substrate_is_refused_with_depth_body_and_lift(substrate, down, body):
+    """I5"""
+    options = {"volume": 4.0, "gravity": 0.1}
+    own = iga.sessile_droplet(substrate, **options).surface
+    start = own.transformed(shift=[0, 0, -down])
+    words = rf"up to (\S+) below the substrate \(solid {body}\) at .*; lift it by at least (\S+) "
+    with pytest.raises(iga.SceneError, match=words) as caught:
+        iga.sessile_droplet(substrate, start=start, **options)
+    depth, lift = map(float, re.search(words, str(caught.value)).groups())
+    assert 0.7 * down <= depth <= down  # along the normal of the solid, at a sample
+    assert 0.3 * down <= lift <= depth
+    assert iga.sessile_droplet(substrate, start=own, **options).kind == "sessile_droplet"
 
 
 @pytest.mark.parametrize(

@@ -93,10 +93,10 @@ def test_units_do_not_change_the_digits(length, tension):
     assert solution.newton_iterations == base.newton_iterations
     for name, power in {"height": 1, "contact_radius": 1, "A_LG": 2, "volume": 3}.items():
         assert solution.measures[name] / length**power == pytest.approx(
-            base.measures[name], rel=1e-9
+            base.measures[name], rel=1e-10
         )
     for name, unit in {"energy": tension * length**2, "p_base": tension / length}.items():
-        assert solution.measures[name] / unit == pytest.approx(base.measures[name], rel=1e-9)
+        assert solution.measures[name] / unit == pytest.approx(base.measures[name], rel=1e-10)
 
 
 @pytest.mark.parametrize(("shift", "tolerance"), [(0.0, 1e-10), (1e2, 1e-10), (1e6, 1e-8)])

@@ -125,15 +125,31 @@ def test_the_matrix_is_the_derivative_of_the_gradient(scene):
     system = assembly.system(surface, motion.directions, multipliers)
     dense = system.matrix.dense()
     assert np.abs(dense - dense.T).max() <= 1e-12 * np.abs(dense).max()
-    h = 1e-5
+    h = 1e-4
 
     def residual(step):
         moved = surface.moved(surface.points + motion.displacement(step * direction))
         return assembly.system(moved, motion.directions, multipliers).residual(multipliers)
 
-    difference = (residual(h) - residual(-h)) / (2 * h)
+    near, far = (residual(k * h) - residual(-k * h) for k in (1, 2))
+    difference = (8.0 * near - far) / (12.0 * h)
     exact = dense @ direction
-    assert np.linalg.norm(difference - exact) <= 1e-6 * np.linalg.norm(exact)
+    assert np.linalg.norm(difference - exact) <= 1e-7 * np.linalg.norm(exact)
+
+
+@pytest.mark.parametrize("penalty", [1e2, 1e4, 1e6, 1e9])
+@pytest.mark.parametrize("make", [cell, rough], ids=["cell", "lattice"])
+def test_gradient_of_any_penalty_agrees_with_central_differences(make, penalty):
+    """Q1: with steps too short to wet or dry a quadrature point."""
+    assembly, surface, _, direction, motion = state(make("full", penalty))
+    contact, h = assembly.contact, 1e-5
+    displacement = motion.displacement(direction)
+    touch = contact.touch(surface.points)
+    assert np.abs(touch.at.gap).min() > 10.0 * h * np.abs(displacement).max()
+    exact = (contact.forces(touch) * displacement[contact.table.functions]).sum()
+    high, low = (contact.energy(contact.touch(surface.points + s * displacement)) for s in (h, -h))
+    scale = np.abs(contact.forces(touch)).max() * np.abs(displacement).max()
+    assert abs((high - low) / (2.0 * h) - exact) <= 1e-8 * scale
 
 
 def test_multipliers_that_hold_the_gap_add_no_energy():
