@@ -1,11 +1,7 @@
 """What a failed solve hands over, and faults put into a solve on purpose (status contract; N1-N4,
 N7, N8, N13, S9)."""
 
-<<<<<<< HEAD
-import signal
-=======
 import json
->>>>>>> g2
 import subprocess
 import sys
 import time
