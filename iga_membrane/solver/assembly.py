@@ -8,6 +8,7 @@ from time import process_time
 import numpy as np
 
 from ..arrays import Array, Index
+from ..deadline import check_time
 from ..scenes.scene import Scene
 from ..surface.cartesian import Cartesian
 from ..surface.motion import Motion
@@ -156,6 +157,7 @@ class Assembly(Functional):
     def _first_order(self, points: Array, directions: Array, at: vary.ElementPoints) -> FirstOrder:
         total = FirstOrder(self.rows, directions, self.multipliers)
         for rows, part in self.parts(points, at):
+            check_time()
             total.add(vary.forces(rows, part, self.tension, self.body), rows.functions)
             for law in self.gaps:
                 total.add(gap.forces(rows, part, law.at(part.x)), rows.functions)
@@ -177,15 +179,18 @@ class Assembly(Functional):
     ) -> Matrix:
         """Hessian of the Lagrangian."""
         body, unknowns = self.density(multipliers), self.rows.unknowns
+        check_time()
         matrix = self._matrix()
         if isinstance(self.spines, Cartesian):
             self._add_by_pairs(matrix, points, directions, at, body)
         else:
             for rows, part in self.parts(points, at):
+                check_time()
                 along = directions[rows.functions]
                 blocks = vary.hessian(rows, part, self.tension, body, along, self._kernels)
                 for law in self.gaps:
                     blocks += gap.hessian(rows, part, law.at(part.x), along, self._kernels)
+                check_time()
                 matrix.add(unknowns(rows.functions), blocks)
         if self.trim is not None:
             inside_lines.add_hessian(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index
+from ..deadline import check_time
 from ..scenes.scene import Scene
 from ..solids import Sphere
 from ..splines import EdgeTable
@@ -108,6 +109,7 @@ def audit(
     whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
     inside, lift, lowest = 0.0, 0.0, np.inf
     for first in range(0, len(whole.functions), AT_A_TIME):
+        check_time()
         table = whole.part(slice(first, first + AT_A_TIME))
         k = surface.on(table)
         area = k.area_element * table.weights

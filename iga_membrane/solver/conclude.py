@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..deadline import OutOfTime, until
 from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..solids import Sphere, SphereLattice, Spheres
@@ -40,6 +41,9 @@ from .stability import Stability, stability_of
 from .status import REMEDY, Status
 from .trimmed_audit import trimmed_audit
 
+GRACE = 0.05
+"""Part of the CPU limit beyond it that the evidence may take."""
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -58,17 +62,23 @@ def conclude(
     """Measure, judge and record a state."""
     scene, result = outcome.scene, outcome.result
     surface, multipliers = result.surface, result.multipliers
-    verdict, checked, kind = None, None, None
+    verdict, checked, kind, doubt = None, None, None, ""
     status, message = result.status, result.message
     if status in REMEDY:
         message = f"{message}: {REMEDY[status]}{rolling(scene)}"
-    if status is not Status.INTERRUPTED:
-        verdict, doubt = _examined(assembly, surface, multipliers)
-        checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
-        if status is None and verdict is None:
-            status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {doubt}"
-    hold = _hold_force(scene, assembly, surface, multipliers)
     inside = volume(assembly, surface)
+    found = measures(scene, assembly, surface, multipliers)
+    try:
+        with until(started + (1.0 + GRACE) * options.max_cpu_s):
+            checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
+            verdict, doubt = _examined(assembly, surface, multipliers)
+    except OutOfTime as end:
+        if status is None:
+            status = Status.INTERRUPTED
+            message = f"an equilibrium, but {end} before it was judged: {REMEDY[status]}"
+    if status is None and verdict is None:
+        status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {doubt}"
+    hold = _hold_force(scene, assembly, multipliers, inside)
     if status is None:
         assert verdict is not None
         status, message = judge(scene, verdict, checked, inside)
@@ -95,7 +105,6 @@ def conclude(
     if left is not None:
         status, kind, message = left
     scale = scene.units
-    found = measures(scene, assembly, surface, multipliers)
     contact = contact_record(scene, assembly, result, found, checked)
     total = process_time() - started - assembly.compile_seconds
     return Solution(
@@ -179,11 +188,10 @@ def _volume_error(scene: Scene, inside: float) -> float | None:
 
 
 def _hold_force(
-    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
+    scene: Scene, assembly: Assembly, multipliers: Array, inside: float
 ) -> tuple[float, float, float]:
     """World vector of the force with which the centroid constraints act on the liquid."""
     local = np.zeros(3)
-    inside = volume(assembly, surface)
     for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
         if isinstance(term, Centroid):
             local["xyz".index(term.axis)] = multiplier * inside

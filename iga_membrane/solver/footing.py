@@ -190,7 +190,9 @@ def _by_tractions(scene: Scene, assembly: Assembly, surface: Surface, body: Body
     psi = np.where(on_sphere, contact.leaving(np.maximum(which, 0), assembly.tension), 0.0)
     carried = np.where(forces[:, 2] > 0, -size, size) / (np.pi * assembly.tension)
     share = np.where(ball, _share(pressure / assembly.tension, radii, carried, psi), 0.0)
-    projected = np.where(ball, share * np.pi * radius**2, size / pressure)
+    projected = share * np.pi * radius**2
+    # an interrupted solve may not know the pressure yet
+    np.divide(size, pressure, out=projected, where=~ball & (pressure != 0.0))
     areas = np.where(ball, 2.0 * np.pi * radius**2 * (1.0 - np.sqrt(1.0 - share)), projected)
     if (on_sphere & ~ball).any():
         bent = 2.0 * touch.at.bend[wet]

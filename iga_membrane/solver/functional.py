@@ -8,6 +8,7 @@ from time import process_time
 import numpy as np
 
 from ..arrays import Array, Mask
+from ..deadline import check_time
 from ..errors import GeometryError
 from ..scenes.scene import Scene
 from ..splines import Table
@@ -198,6 +199,7 @@ class Functional:
 
     def energies_at(self, points: Array, at: vary.ElementPoints) -> Energies:
         """The same, its geometry at the quadrature points being known."""
+        check_time()
         total, constraints = self.values(points, at)
         total += sum(gap.energy(self.table, at, law.at(at.x)) for law in self.gaps)
         if self.contact is not None:

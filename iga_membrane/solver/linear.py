@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array, Index
+from ..deadline import check_time
 from .inverse_root import InverseRoot, SingularMatrix
 
 if TYPE_CHECKING:
@@ -155,6 +156,7 @@ class Bordered:
     """
 
     def __init__(self, matrix: Matrix, border: Array, shift: Array | None = None) -> None:
+        check_time()
         self._n, self._m = border.shape
         self._border = border
         self._shift = shift

@@ -93,6 +93,9 @@ class Journal:
     start: Progress | None = None
 
 
+Reached = Callable[[Scene, NewtonResult], tuple[NewtonResult, Sequence[Any]]]
+
+
 @dataclass(eq=False)
 class LoadPath:
     """End of load stepping.
@@ -120,7 +123,7 @@ def load_stepping(
     options: NewtonOptions,
     smallest: float,
     report: Callable[[float], None] = lambda load: None,
-    reached: Callable[[Scene, NewtonResult], Sequence[Any]] = lambda scene, result: (),
+    reached: Reached = lambda scene, result: (result, ()),
     journal: Journal | None = None,
 ) -> LoadPath:
     """From the ramp's own start at load 0 to load 1, in steps that grow and halve.
@@ -131,8 +134,8 @@ def load_stepping(
     smallest : step of the load below which to give up: LIMIT_POINT if the smallest eigenvalue
         foretells a fold there, else STALLED.
     report : called with every load reached.
-    reached : called with the scene and the state at each of the ramp's values; what it returns,
-        the solutions so far, is kept with the progress.
+    reached : called with the scene and the state at each of the ramp's values; it returns the
+        state to go on from, and the solutions so far, which are kept with the progress.
     journal : of converged steps, to go on after an interruption.
     """
     journal = journal or Journal()
@@ -148,7 +151,7 @@ def load_stepping(
         path, step = LoadPath(result, scene, [begun]), 0.25
         if result.status is not None:
             return path
-        found = reached(scene, result)
+        path.result, found = reached(scene, result)
         _note(journal, path, step, assembly, found)
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
     while path.last_good < 1.0:
@@ -164,7 +167,7 @@ def load_stepping(
             path.result, path.scene, path.last_good = result, scene, load
             report(load)
             if load == stop:
-                found = reached(scene, result)
+                path.result, found = reached(scene, result)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
             _note(journal, path, step, assembly, found)
         elif result.status is Status.INTERRUPTED:
@@ -271,6 +274,9 @@ def _give_up(
     step = load - path.last_good
     back = max(0.0, path.last_good - step)
     earlier = _attempt(assembly, path, ramp(back), options)
+    if earlier.status is Status.INTERRUPTED:
+        path.result.status, path.result.message = earlier.status, earlier.message
+        return
     softer = _verdict(assembly, earlier) if earlier.status is None else None
     assembly.load(path.scene)
     verdict = _verdict(assembly, path.result)

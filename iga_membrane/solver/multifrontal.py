@@ -17,6 +17,7 @@ from scipy.linalg.lapack import dtrtri
 from scipy.sparse import csr_array
 
 from ..arrays import Array, Index, Mask
+from ..deadline import check_time
 from .inverse_root import InverseRoot, SingularMatrix
 
 LEAF = 96
@@ -82,6 +83,7 @@ class Elimination:
         cuts = np.searchsorted(front[columns[self.values]], np.arange(len(tree) + 1))
         self.fronts: list[Front] = []
         for f, (_, children) in enumerate(tree):
+            check_time()
             entries, first, end = slice(cuts[f], cuts[f + 1]), starts_[f], ends[f]
             mine = [row[entries], *(self.fronts[c].rest for c in children)]
             rest = np.unique(np.concatenate([some[some >= end] for some in mine]))
@@ -122,6 +124,7 @@ class Multifrontal:
         left: dict[int, Array] = {}
         self._parts: list[tuple[InverseRoot, Array]] = []
         for number, front in enumerate(elimination.fronts):
+            check_time()
             k, m = front.own.stop - front.own.start, len(front.rest)
             own = np.zeros((k, k + m))
             own.ravel()[front.places] = values[front.entries]
@@ -180,6 +183,7 @@ def _dissected(graph: csr_array, points: Array, sizes: Index) -> list[tuple[Inde
         return touch
 
     def dissect(nodes: Index) -> int:
+        check_time()
         children = []
         own = nodes
         if sizes[nodes].sum() > LEAF and len(nodes) > 1:

@@ -14,6 +14,7 @@ from time import process_time
 import numpy as np
 
 from ..arrays import Array
+from ..deadline import OutOfTime, check_time, until
 from ..errors import GeometryError
 from ..splines import Grading
 from ..surface.reparametrize import distortion, regridded
@@ -78,7 +79,8 @@ class NewtonOptions:
 
 @dataclass(frozen=True)
 class Iteration:
-    """One Newton step: relative residual before it, its size, the part of it taken."""
+    """One Newton step: relative residual before it, its size, the part of it taken; both 0 where
+    the linear system could not be solved."""
 
     residual: float
     step: float
@@ -132,20 +134,18 @@ def newton(
     grading : of the arc length, or None to leave the parametrization alone.
     """
     count = assembly.multipliers
-    if assembly.contact is not None:
-        assembly.follow(surface)
-        assembly.contact.begin()
-    if assembly.trim is not None:
-        assembly.trim.begin()
-        assembly.trim.hold(surface.points)
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
-        if multipliers is None and count:
-            result.multipliers = _best_balance(assembly, surface)
-        _iterate(assembly, result, grading, options)
+        with until(options.deadline):
+            _begin(assembly, surface)
+            if multipliers is None and count:
+                result.multipliers = _best_balance(assembly, surface)
+            _iterate(assembly, result, grading, options)
         return result
     except _Stop as stop:
         result.status, result.message = stop.status, str(stop)
+    except OutOfTime as end:
+        result.status, result.message = Status.INTERRUPTED, str(end)
     except SingularMatrix as error:
         result.status, result.message = Status.LINEAR_SOLVE_FAILED, str(error)
     except (GeometryError, np.linalg.LinAlgError) as error:
@@ -156,6 +156,17 @@ def newton(
     if result.best is not None:
         _, result.surface, result.multipliers = result.best
     return result
+
+
+def _begin(assembly: Assembly, surface: Surface) -> None:
+    """Find what is in contact at the start."""
+    check_time()
+    if assembly.contact is not None:
+        assembly.follow(surface)
+        assembly.contact.begin()
+    if assembly.trim is not None:
+        assembly.trim.begin()
+        assembly.trim.hold(surface.points)
 
 
 def _iterate(
@@ -170,8 +181,6 @@ def _iterate(
     roll: Array = np.zeros(len(assembly.spines.shifts))
     while left and rounds < ROUNDS:
         left -= 1
-        if process_time() > options.deadline:
-            raise _Stop(Status.INTERRUPTED, "the CPU limit was reached")
         motion = assembly.motion(result.surface)
         result.surface = assembly.relaxed(result.surface, motion)
         system = assembly.system(result.surface, motion.directions, result.multipliers)
@@ -185,7 +194,11 @@ def _iterate(
         farthest = np.inf
         if assembly.contact is not None:
             farthest = (reach if steady else HELD) * assembly.contact.length
-        direction = _direction(system, farthest, plain=residual <= options.near and not flee)
+        try:
+            direction = _direction(system, farthest, plain=residual <= options.near and not flee)
+        except SingularMatrix:
+            result.iterations.append(Iteration(residual, 0.0, 0.0, 0.0))
+            raise
         result.linear_seconds += process_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None

@@ -68,6 +68,9 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
         near_start = before.surface
         if scene.start_from is not None:
             near_start = scene.start_from(before.surface)
+        if before.status is Status.INTERRUPTED:
+            none = np.zeros(assembly.multipliers)
+            return replace(before, surface=near_start, multipliers=none, best=None)
         start = near_start
         if assembly.trim is not None:
             start = pressed(scene, assembly, near_start)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..deadline import check_time
 from ..surface.surface import Surface
 from .assembly import Assembly
 from .linear import Bordered, Matrix
@@ -72,6 +73,7 @@ def stability(
     vectors = _inverse(factor, start, m)
     smallest, error = np.inf, np.inf
     for _ in range(40):
+        check_time()
         vectors = _inverse(factor, np.column_stack([mass @ v for v in vectors.T]), m)
         vectors, _ = np.linalg.qr(vectors)
         k = vectors.T @ np.column_stack([matrix @ v for v in vectors.T])

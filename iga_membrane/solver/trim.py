@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index, Mask
+from ..deadline import check_time
 from ..solids import Solid
 from ..splines import LineTable, Space, Table, cut, faces_between
 from ..surface.bezier import BezierPatches, bezier_net
@@ -163,6 +164,7 @@ class Trim:
         patches = BezierPatches(nets[..., :3])
 
         def level(rows: Index, u: Array) -> tuple[Array, Array, Index]:
+            check_time()
             x, slopes = patches.at(rows, u)
             at = self.term.solid.nearest(x)
             depth, outward = self._core(x, at.which)

@@ -9,13 +9,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from ..deadline import check_time
 from ..scenes.scene import Scene
 from ..splines import Table
 from ..surface.motion import Motion
 from ..surface.surface import Surface
 from ..terms import BodyDensity, PlaneContactLine, SurfaceTension
 from .assembly import TINY
-from .audit import Audit, edge_forces, missing_volume, scatter, stands_free
+from .audit import AT_A_TIME, Audit, edge_forces, missing_volume, scatter, stands_free
 from .contact_line import contact_line, vertical_forces
 from .trim import EXTRA, Trim
 
@@ -44,7 +45,10 @@ def trimmed_audit(
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     inside = 0.0
     for table in (dense, outside.area):
-        inside += _membrane(surface, table, tension, body, motion, total, absolute)
+        for start in range(0, len(table.functions), AT_A_TIME):
+            check_time()
+            part = table.part(slice(start, start + AT_A_TIME))
+            inside += _membrane(surface, part, tension, body, motion, total, absolute)
     line = trim.on_line(surface.points, outside)
     arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
     membrane, solid = line.m / line.area[..., None], line.at.normal

@@ -8,11 +8,13 @@ import time
 
 import numpy as np
 import pytest
-from helpers import droplet, droplet_file, particle_sheet, path_file, pinned_cap
+from helpers import UNIT_VOLUME, droplet, droplet_file, particle_sheet, path_file, pinned_cap
 from robustness.contract import check_contract, finite, unheld_droplet
 
 import iga_membrane as iga
 from iga_membrane.cli import main
+from iga_membrane.deadline import OutOfTime
+from iga_membrane.solver import conclude as conclude_module
 from iga_membrane.solver import newton as newton_module
 from iga_membrane.solver import solve as solve_module
 from iga_membrane.solver.assembly import Assembly
@@ -201,6 +203,64 @@ def test_the_cpu_limit_is_kept():
     assert "max_cpu_s" in solution.message
     assert solution.volume_error is not None
     assert spent <= 1.2 * 0.5 + 0.5  # and what the parts of a result cost
+
+
+def test_an_interrupted_solve_is_judged_in_the_time_that_is_left(monkeypatch):
+    """The limit comes between two pieces of the third Newton step."""
+    original, calls = Assembly.system, []
+
+    def late(self, *arguments):
+        calls.append(1)
+        if len(calls) == 3:
+            raise OutOfTime
+        return original(self, *arguments)
+
+    monkeypatch.setattr(Assembly, "system", late)
+    solution = iga.solve(droplet(150, 1.0, elements=8), on_fail="return")
+    assert solution.status is iga.Status.INTERRUPTED
+    check_contract(solution)
+    assert len(solution.iterations) == 2
+    assert solution.index == 0
+    assert solution.lambda_min > 0
+    assert np.isfinite(solution.contact["max_penetration"])
+
+
+def test_an_equilibrium_that_was_not_judged_in_time_is_no_success(monkeypatch):
+    def late(*arguments):
+        raise OutOfTime
+
+    monkeypatch.setattr(conclude_module, "stability_of", late)
+    solution = iga.solve(droplet(150, 1.0, elements=8), on_fail="return")
+    assert solution.status is iga.Status.INTERRUPTED
+    assert "before it was judged" in solution.message
+    check_contract(solution)
+
+
+FINE = {
+    "contact lines": (150.0, "eighth", 2.0),
+    "contact areas": (180.0, "eighth", 2.0),
+    "contact lines, full model": (150.0, "full", 8.0),
+    "contact areas, full model": (180.0, "full", 2.0),
+}
+"""Contact angle, model, limit: what a result costs, up to 1.3 CPU s in the full models, cannot be
+cut short."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FINE)
+def test_the_cpu_limit_is_kept_on_fine_asperities(name):
+    """N13: every piece of a Newton step, and what the result costs, within a fifth."""
+    angle, model, limit = FINE[name]
+    mesh = iga.Discretization(elements=80, model=model)
+    lattice = iga.SphereLattice(angle, radius=0.05, spacing=0.2)
+    scene = iga.sessile_droplet(lattice, volume=UNIT_VOLUME, gravity=20.0, discretization=mesh)
+    iga.solve(scene, iga.SolverOptions(max_cpu_s=0.1), on_fail="return")  # compiled
+    began = time.process_time()
+    solution = iga.solve(scene, iga.SolverOptions(max_cpu_s=limit), on_fail="return")
+    spent = time.process_time() - began
+    print(f"{name}, {limit:g} s: {spent:.2f}, {solution.status.name}, {solution.unknowns} unknowns")
+    assert solution.status is iga.Status.INTERRUPTED
+    assert spent <= 1.2 * limit
 
 
 def test_too_little_memory_is_named(monkeypatch):
