@@ -98,6 +98,7 @@ def _compiled(function: Any) -> Any:
         return numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:
         # a read-only install without a writable home has no place for a cache
+        log.warning("no folder for the cache of compiled loops: every process compiles them anew")
         return numba.njit(**_OPTIONS)(function)
 
 

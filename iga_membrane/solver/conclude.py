@@ -93,6 +93,8 @@ def conclude(
             status, kind = Status.TOPOLOGY_CHANGE, "self-contact"
             x, y, z = scene.units.to_world(place)
             message = f"the membrane meets itself at ({x:.4g}, {y:.4g}, {z:.4g})"
+    if result.floor is not None and status is not None:
+        message += f"; rounding ended the iteration, at a relative residual of {result.floor:.0e}"
     sunk = too_soft(scene, assembly, multipliers)
     if sunk is not None and status is not Status.INTERRUPTED:
         status, message = sunk

@@ -98,6 +98,7 @@ class NewtonResult:
     surface, multipliers : the equilibrium, or the state of smallest residual met.
     best : that residual and state.
     index : negative eigenvalues of the last Hessian on the constraints' null space.
+    floor : relative residual at which rounding ended the iteration, before its tolerance; or None.
     """
 
     surface: Surface
@@ -108,6 +109,7 @@ class NewtonResult:
     best: tuple[float, Surface, Array] | None = None
     iterations: list[Iteration] = field(default_factory=list)
     linear_seconds: float = 0.0
+    floor: float | None = None
 
 
 class _Stop(Exception):
@@ -214,6 +216,7 @@ def _iterate(
         result.iterations.append(Iteration(residual, size, taken, direction.shift))
         log.debug("%s, %d, residual %.0e", options.phase, len(result.iterations), residual)
         if moved is None and residual <= ROUNDING:
+            result.floor = residual
             return
         crawling = crawling + 1 if taken < CRAWL else 0
         if assembly.contact is not None and crawling >= PATIENCE:
@@ -243,8 +246,11 @@ def _iterate(
                 # other multipliers of contact are another problem
                 left, rounds = options.max_iterations, assembly.rounds
             continue
-        if full and (size <= options.tolerance or (residual <= 1e-12 and size <= 1e-6)):
-            return  # converged, or at the rounding floor of an ill-conditioned state
+        if full and size <= options.tolerance:
+            return
+        if full and residual <= 1e-12 and size <= 1e-6:
+            result.floor = residual  # of an ill-conditioned state, or of a tolerance below it
+            return
         if grading is not None and polish:
             small = size * taken <= options.polish_below
             allowed = POLISHED if small else DISTORTED

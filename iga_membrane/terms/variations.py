@@ -7,8 +7,10 @@ along ``d_a`` by one unit moves ``x, a_1, a_2`` by ``N_a d_a, N_a,1 d_a, N_a,2 d
 
 from __future__ import annotations
 
+import logging
 import os
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,8 @@ from ..arrays import Array, Index
 from ..splines import Table
 from ..splines.table import shared
 from .term import BodyDensity
+
+log = logging.getLogger("iga_membrane")
 
 CACHED = 16_000
 """Numbers per array that numpy works on at a time: half as long a Hessian as with whole arrays."""
@@ -107,9 +111,16 @@ def compiled_kernels(elements: int) -> Any:
     """
     if elements < COMPILED_FROM or os.environ.get("IGA_MEMBRANE_NO_NUMBA") == "1":
         return None
+    return _loaded()
+
+
+@cache
+def _loaded() -> Any:
+    """The compiled loops, or None with one warning in a process."""
     try:
         from .. import _kernels
-    except ImportError:
+    except ImportError as error:
+        log.warning("compiled loops cannot be used (%s): numpy takes longer on large meshes", error)
         return None
     return _kernels
 

@@ -239,11 +239,10 @@ def test_an_equilibrium_that_was_not_judged_in_time_is_no_success(monkeypatch):
 FINE = {
     "contact lines": (150.0, "eighth", 2.0),
     "contact areas": (180.0, "eighth", 2.0),
-    "contact lines, full model": (150.0, "full", 8.0),
     "contact areas, full model": (180.0, "full", 2.0),
 }
-"""Contact angle, model, limit: what a result costs, up to 1.3 CPU s in the full models, cannot be
-cut short."""
+"""Contact angle, model, limit. What a result costs cannot be cut short: with contact lines in the full
+model 1.3 CPU s."""
 
 
 @pytest.mark.slow

@@ -128,6 +128,18 @@ def test_without_compiled_loops_the_answer_is_the_same(monkeypatch):
     assert plain.newton_iterations == compiled.newton_iterations
 
 
+def test_missing_compiled_loops_are_told_once(monkeypatch, caplog):
+    """N12"""
+    variations._loaded.cache_clear()
+    monkeypatch.setattr(variations, "COMPILED_FROM", 0)
+    monkeypatch.delattr(iga, "_kernels", raising=False)
+    monkeypatch.setitem(sys.modules, "iga_membrane._kernels", None)
+    for _ in range(2):
+        assert iga.solve(droplet(120, 1.0, elements=6)).success
+    variations._loaded.cache_clear()
+    assert caplog.text.count("compiled loops cannot be used") == 1
+
+
 COMPILED = """
 import json
 import iga_membrane as iga
@@ -152,6 +164,8 @@ def test_threads_and_a_cache_that_cannot_be_written_change_nothing(environment):
             env=own | more,
         )  # fmt: skip
         runs.append(json.loads(run.stdout))
+        told = "no folder for the cache" in run.stderr
+        assert told == ("NUMBA_CACHE_DIR" in more)
     assert runs[1] == pytest.approx(runs[0], rel=1e-10)
 
 
@@ -160,6 +174,11 @@ def test_the_finest_tolerance_stops_at_the_floor_of_rounding():
     solution = iga.solve(droplet(150, 1.0, elements=30), iga.SolverOptions(tolerance=1e-14))
     assert solution.success
     assert solution.newton_iterations <= 15
+    floor = solution.iterations[-1].residual
+    assert floor < 1e-12
+    assert (
+        f"rounding ended the iteration, at a relative residual of {floor:.0e}" in solution.message
+    )
     exact = drop_on_plane(1.0, 150.0)
     assert worst(solution.measures, exact, ("energy", "p_base")) <= 1e-11
 
