@@ -241,8 +241,8 @@ FINE = {
     "contact areas": (180.0, "eighth", 2.0),
     "contact areas, full model": (180.0, "full", 2.0),
 }
-"""Contact angle, model, limit. What a result costs cannot be cut short: with contact lines in the full
-model 1.3 CPU s."""
+"""Contact angle, model, limit. What a result costs cannot be cut short: with contact lines in
+the full model 1.3 CPU s."""
 
 
 @pytest.mark.slow

@@ -140,6 +140,20 @@ def test_missing_compiled_loops_are_told_once(monkeypatch, caplog):
     assert caplog.text.count("compiled loops cannot be used") == 1
 
 
+def test_loops_that_cannot_be_cached_are_compiled_and_told(monkeypatch, caplog):
+    """N12"""
+    from iga_membrane import _kernels
+
+    def without_a_place(cache=False, **options):
+        if cache:
+            raise RuntimeError("no locator available")
+        return lambda function: function
+
+    monkeypatch.setattr(_kernels.numba, "njit", without_a_place)
+    assert _kernels._compiled(abs) is abs
+    assert caplog.text.count("no folder for the cache") == 1
+
+
 COMPILED = """
 import json
 import iga_membrane as iga
@@ -164,8 +178,6 @@ def test_threads_and_a_cache_that_cannot_be_written_change_nothing(environment):
             env=own | more,
         )  # fmt: skip
         runs.append(json.loads(run.stdout))
-        told = "no folder for the cache" in run.stderr
-        assert told == ("NUMBA_CACHE_DIR" in more)
     assert runs[1] == pytest.approx(runs[0], rel=1e-10)
 
 
@@ -176,9 +188,8 @@ def test_the_finest_tolerance_stops_at_the_floor_of_rounding():
     assert solution.newton_iterations <= 15
     floor = solution.iterations[-1].residual
     assert floor < 1e-12
-    assert (
-        f"rounding ended the iteration, at a relative residual of {floor:.0e}" in solution.message
-    )
+    told = f"rounding ended the iteration, at a relative residual of {floor:.0e}"
+    assert told in solution.message
     exact = drop_on_plane(1.0, 150.0)
     assert worst(solution.measures, exact, ("energy", "p_base")) <= 1e-11
 
