@@ -24,6 +24,7 @@ from .start import (
     Pancake,
     check_clear,
     check_net,
+    check_turns,
     drop_on_sphere,
     least_energy_pancake,
     rounded,
@@ -172,3 +173,4 @@ def _start(foot: Rest, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
 def _check_start(start: Surface, mesh: Mesh, substrate: Plane | Sphere) -> None:
     check_net(start, drop_space(mesh.space, mesh.degree, mesh.elements))
     check_clear(start, substrate, 1e-6 * start.size)
+    check_turns(start, substrate.unit_normal() if isinstance(substrate, Plane) else np.eye(3)[2])
