@@ -23,6 +23,13 @@ def test_caps_at_every_angle(angle):
         assert exact["contact_radius"] < 0.02
 
 
+@pytest.mark.parametrize("angle", [0.5289, 0.6206, 0.85])
+def test_the_flattest_caps_stop_at_the_floor_of_rounding(angle):
+    solution = iga.solve(droplet(angle))
+    assert worst(solution.measures, cap_on_plane(angle), ("height", "p_base")) < 1e-9
+    assert len(solution.iterations) <= 5
+
+
 EASY = [(150, bond) for bond in (0, 1e-6, 1e-3, 0.1, 1, 10, 100)]
 OTHERS = [(150, 1000), *((180, bond) for bond in (1e-3, 0.1, 1, 10, 100, 1000))]
 
