@@ -210,6 +210,10 @@ def _named(
     }
 
 
+MANY = 100
+"""Wet asperities from which on a droplet is as well in one place as in another."""
+
+
 def _warnings(scene: Scene, contact: Mapping[str, Any]) -> tuple[str, ...]:
     pinned = [t.axis for t in scene.terms if isinstance(t, Centroid) and t.axis not in scene.hold]
     texts = list(scene.warnings)
@@ -218,12 +222,16 @@ def _warnings(scene: Scene, contact: Mapping[str, Any]) -> tuple[str, ...]:
             f"neutral rigid translations along {', '.join(pinned)} are pinned by holding the "
             "centroid"
         )
-    on_top = isinstance(scene.substrate, (Sphere, SphereLattice, Spheres))
-    alone = on_top and not scene.hold and contact.get("wet_solids") == 1
-    if alone and scene.kind == "sessile_droplet" and scene.sector.mirrored == "xy":
-        texts.append(
-            "a droplet on one sphere "
-            + ("slides off it" if any(scene.acceleration) else "rolls on it freely")
-            + f": that motion is not in the {scene.sector.model} model, whose stability is judged"
-        )
+    on_top = isinstance(scene.substrate, (Sphere, SphereLattice, Spheres)) and not scene.hold
+    judged = f"that motion is not in the {scene.sector.model} model, whose stability is judged"
+    if on_top and scene.kind == "sessile_droplet" and scene.sector.mirrored == "xy":
+        wet = contact.get("wet_solids")
+        if wet == 1:
+            moves = "slides off it" if any(scene.acceleration) else "rolls on it freely"
+            texts.append(f"a droplet on one sphere {moves}: {judged}")
+        elif wet and wet <= MANY:
+            texts.append(
+                f"a droplet on {wet} asperities may roll to better ones: {judged}; take "
+                'discretization.model = "full" to see it'
+            )
     return tuple(texts)

@@ -70,3 +70,13 @@ def test_a_conforming_line_needs_an_asperity_at_the_origin(offset):
 def test_asperities_too_small_to_resolve_are_refused_by_name():
     with pytest.raises(iga.SceneError, match=r"substrate\.radius.*larger asperities"):
         on_lattice(150.0, 1e9)
+
+
+def test_a_model_blind_to_rolling_says_so():
+    """In the full model this state is a saddle."""
+    lattice = iga.SphereLattice(180.0, 0.2, 0.45, offset=(0.225, 0.225))
+    found = iga.solve(iga.sessile_droplet(lattice, **WATER))
+    assert found.contact["wet_solids"] == 12
+    assert any("may roll to better ones" in text for text in found.warnings)
+    held = iga.solve(iga.sessile_droplet(lattice, **WATER, hold="xy"))
+    assert not any("roll" in text for text in held.warnings)
