@@ -25,7 +25,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "rings": ("radius", "half_height", "volume", "pressure"),
     "discretization": ("space", "degree", "elements", "model"),
     "solver": ("motion", "stabilization", "contact", "penalty", "penetration_tolerance",
-               "contact_line", "start", "max_cpu_s", "max_memory_gb"),
+               "contact_line", "start", "follow_instability", "max_cpu_s", "max_memory_gb"),
     "path": ("parameter", "values"),
 }  # fmt: skip
 
