@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import choice, contact_angle, flag, number, vector
+from ..checks import choice, contact_angle, number, vector
 from ..errors import SceneError
 from ..solids import MOTIONS, Plane, Sphere, SphereLattice, Spheres
 from .asperities import STARTS
@@ -265,8 +265,6 @@ def solver_limits(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
         key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table
     }
     if "follow_instability" in table:
-        limits["follow_instability"] = flag(
-            "solver.follow_instability", table["follow_instability"]
-        )
+        limits["follow_instability"] = table["follow_instability"]
     start = table.get("start", "auto")
     return limits | {"start": start} if start.endswith(".npz") else limits

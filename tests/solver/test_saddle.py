@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from helpers import UNIT_VOLUME, droplet, pinned_cap
+from scipy.optimize import brentq
 
 import iga_membrane as iga
 from iga_membrane.solver.assembly import Assembly
@@ -21,6 +22,13 @@ def swollen(model="half"):
     """Most of the liquid between two rings beyond where its round state is stable."""
     mesh = iga.Discretization(model=model)
     return iga.film_between_rings(half_height=0.5, volume=4.0 * np.pi, discretization=mesh)
+
+
+def between_spheres(apart=1.25):
+    """A bridge between two spheres that holds less liquid round their gap than beside it."""
+    pair = [iga.Sphere(90.0, 0.8, (0.0, 0.0, z)) for z in (-apart, apart)]
+    mesh = iga.Discretization(elements=8)
+    return iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=pair, discretization=mesh)
 
 
 def under_a_particle():
@@ -96,7 +104,7 @@ def test_following_is_refused_where_it_is_not_built():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", [swollen, under_a_particle])
+@pytest.mark.parametrize("scene", [swollen, between_spheres, under_a_particle])
 def test_symmetric_state_that_gives_way_is_followed_down(scene):
     """L10: with its volume kept, to a stable state of lower energy."""
     saddle, found = iga.solve(scene(), on_fail="return"), iga.solve(scene(), FOLLOW)
@@ -106,6 +114,25 @@ def test_symmetric_state_that_gives_way_is_followed_down(scene):
     assert f"by {drop:.6g} in energy" in found.message
     assert found.volume_error <= 1e-8
     assert found.newton_iterations > saddle.newton_iterations
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("apart", [1.22, 1.25, 1.28])
+def test_bridge_that_gives_way_sideways_becomes_part_of_a_ball(apart):
+    """At 90 degrees a ball that meets both spheres at right angles is an equilibrium."""
+
+    def volume(radius):
+        """Of a ball less what lies in the spheres of radius 0.8, whose centres are ``away``."""
+        away = np.hypot(radius, 0.8)
+        both = away**2 + 2.0 * away * (radius + 0.8) - 3.0 * (radius - 0.8) ** 2
+        lens = np.pi * (radius + 0.8 - away) ** 2 * both / (12.0 * away)
+        return 4.0 / 3.0 * np.pi * radius**3 - 2.0 * lens
+
+    radius = brentq(lambda r: volume(r) - UNIT_VOLUME, 0.8, 2.0)
+    assert np.hypot(radius, 0.8) > apart  # its centre lies beside the gap
+    found = iga.solve(between_spheres(apart), FOLLOW)
+    assert "followed down from a saddle" in found.message
+    assert found.measures["pressure"] == pytest.approx(2.0 / radius, rel=1e-4)
 
 
 @pytest.mark.slow
