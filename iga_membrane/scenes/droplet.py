@@ -209,7 +209,7 @@ def sessile_droplet(
         hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=_hints(substrate),
+        warnings=_hints(substrate, bond),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
@@ -274,11 +274,16 @@ def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float],
     return (x, y, z + substrate.radius), np.eye(3)
 
 
-def _hints(substrate: Solid) -> tuple[str, ...]:
-    angle = float(np.min(substrate.contact_angle))
-    if angle > np.pi:
-        return ()
-    return (
-        f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
-        "angles are in degrees through the liquid",
-    )
+def _hints(substrate: Solid, bond: Array) -> tuple[str, ...]:
+    angle, texts = float(np.min(substrate.contact_angle)), []
+    if angle <= np.pi:
+        texts.append(
+            f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
+            "angles are in degrees through the liquid"
+        )
+    if angle == 180.0 and isinstance(substrate, Plane) and not bond.any():
+        texts.append(
+            "at 180 degrees without gravity a droplet touches its plane in a point: it rolls along "
+            "x and y and lifts off freely"
+        )
+    return tuple(texts)

@@ -14,7 +14,7 @@ from ..errors import SceneError
 from ..solids import Plane, Sphere
 from ..splines import Grading, points_of
 from ..surface.ring import axisymmetric, drop_space
-from ..surface.supports import Fixed, Sliding
+from ..surface.supports import Fixed, Sector, Sliding
 from ..surface.surface import Surface
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .liquid import Liquid, Mesh
@@ -24,6 +24,7 @@ from .start import (
     Pancake,
     check_clear,
     check_net,
+    check_turns,
     drop_on_sphere,
     least_energy_pancake,
     rounded,
@@ -62,11 +63,13 @@ def on_the_plane(parts: Question) -> Foot:
     tangentially where its edge is found to be."""
     gamma, scale, bond = parts.liquid.surface_tension, parts.scale, parts.down
     mesh, sector = parts.asked.mesh(), sector_of(parts.asked.mesh(), parts.bond)
-    if not bond > 0 or parts.bond[:2].any():
+    if parts.bond[:2].any() or parts.bond[2] > 0.0:
         raise SceneError(
             "substrate.contact_angle = 180, gravity: on a plane only gravity straight towards it "
-            "holds a droplet at 180 degrees; give such gravity or an angle < 180"
+            "holds a droplet at 180 degrees; give such gravity, none, or an angle < 180"
         )
+    if not bond:
+        return _on_a_point(parts, mesh, sector)
     foot = rest_of(Plane(STEEPEST), parts.liquid, scale, bond)
     length = foot.pancake.length
     rim = rounded(bond, BALL).foot
@@ -76,6 +79,19 @@ def on_the_plane(parts: Question) -> Foot:
     start = _start(foot, mesh, grading, scale)
     line = PlaneContactLine(gamma, 180.0)
     return Foot(start, sector, mesh, [line], [Fixed("xi2=0")], grading, tangent=True)
+
+
+def _on_a_point(parts: Question, mesh: Mesh, sector: Sector) -> Foot:
+    """A sphere that touches the plane, but for a hole too small to matter, whose rim is held."""
+    local = least_energy_pancake(180.0 - POINT, 0.0, BALL, steepest=180.0)
+    rest = Rest(local, 0.0, PlaneContactLine(parts.liquid.surface_tension, 180.0), Sliding("xi2=0"))
+    start = _start(rest, mesh, Grading(), parts.scale)
+    return Foot(start, sector, mesh, [rest.line], [Fixed("xi2=0")], Grading())
+
+
+POINT = 0.01
+"""Degrees by which the membrane at the rim of that hole misses 180: the sphere's radius is right to
+1e-15."""
 
 
 def rim_radius(surface: Surface) -> float:
@@ -157,3 +173,4 @@ def _start(foot: Rest, mesh: Mesh, grading: Grading, scale: Scale) -> Surface:
 def _check_start(start: Surface, mesh: Mesh, substrate: Plane | Sphere) -> None:
     check_net(start, drop_space(mesh.space, mesh.degree, mesh.elements))
     check_clear(start, substrate, 1e-6 * start.size)
+    check_turns(start, substrate.unit_normal() if isinstance(substrate, Plane) else np.eye(3)[2])

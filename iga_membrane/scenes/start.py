@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..errors import SceneError
+from ..errors import GeometryError, SceneError
 from ..solids import Solid, Sphere
 from ..splines import Space
 from ..splines.quadrature import gauss
@@ -324,6 +324,39 @@ def check_clear(start: Surface, solid: Solid, allowed: float) -> None:
             f"[{x:g}, {y:g}, {z:g}]; lift it by at least {depth - allowed:g} along the solid's "
             "normal"
         )
+
+
+def check_turns(start: Surface, up: Array) -> None:
+    """Refuse a ring patch that passes through its own middle.
+
+    Parameters
+    ----------
+    up : (3,) unit vector about which its rings run counterclockwise.
+
+    Raises
+    ------
+    GeometryError
+        With the element and the place.
+    """
+    one, two = start.space.bases
+    k = start.grid(SEEN * one.elements + 1, SEEN * two.elements + 1, 1)
+    across, along = k.position - k.position[:-1].mean(axis=0), k.tangents[..., 0, :]
+    turn = np.cross(across, along) @ up
+    beyond = (across[:, 1:] * across[:, :-1]).sum(axis=-1)
+    tiny = 1e-9 * start.size**2
+    backwards = np.argwhere((turn[:, :-1] < -tiny) | (beyond < -tiny))
+    if len(backwards):
+        i, j = (int(n) for n in backwards[0])
+        x, y, z = k.position[i, j]
+        raise GeometryError(
+            f"start: the surface is folded in element ({i // SEEN}, {j // SEEN}) of its patch, at "
+            f"[{x:g}, {y:g}, {z:g}], where it passes through its own middle; give a start whose "
+            "rings run counterclockwise about the droplet, each within reach of the next"
+        )
+
+
+SEEN = 3
+"""Points of an element, along each parameter, at which a start is looked at."""
 
 
 def gathered(radius: Array, spot: float, part: float) -> Array:

@@ -48,6 +48,8 @@ BELOW, BELOW_BESIDE = 1e-9, 1e-3
 """Depth below a plane on the way, over the scene's length, and the same with contact lines inside
 the membrane, which push it there; at its end the audit allows none. Near 180 degrees there is an
 equilibrium that dips below the plane by 2e-4."""
+FLOOR = 1e-12
+"""Relative residual of a state that no step improves."""
 ROUNDING = 1e-10
 """Relative residual at which a search that finds no descent has met rounding, not an obstacle."""
 
@@ -224,13 +226,15 @@ def _iterate(
         result.multipliers = result.multipliers + taken * (
             direction.multipliers - result.multipliers
         )
-        full = taken == 1.0 and not direction.shift
+        # where energies differ by rounding only, no part of a step tells more than another
+        floor = residual <= FLOOR and size <= options.tolerance
+        full = (taken == 1.0 or floor) and not direction.shift
         if full and not assembly.settled(result.surface, near):
             if assembly.rounds > rounds:
                 # other multipliers of contact are another problem
                 left, rounds = options.max_iterations, assembly.rounds
             continue
-        if full and (size <= options.tolerance or (residual <= 1e-12 and size <= 1e-6)):
+        if full and (size <= options.tolerance or (residual <= FLOOR and size <= 1e-6)):
             return  # converged, or at the rounding floor of an ill-conditioned state
         if grading is not None and polish:
             small = size * taken <= options.polish_below

@@ -23,6 +23,13 @@ def test_caps_at_every_angle(angle):
         assert exact["contact_radius"] < 0.02
 
 
+@pytest.mark.parametrize("angle", [0.5289, 0.6206, 0.85])
+def test_the_flattest_caps_stop_at_the_floor_of_rounding(angle):
+    solution = iga.solve(droplet(angle))
+    assert worst(solution.measures, cap_on_plane(angle), ("height", "p_base")) < 1e-9
+    assert len(solution.iterations) <= 5
+
+
 EASY = [(150, bond) for bond in (0, 1e-6, 1e-3, 0.1, 1, 10, 100)]
 OTHERS = [(150, 1000), *((180, bond) for bond in (1e-3, 0.1, 1, 10, 100, 1000))]
 
@@ -48,10 +55,18 @@ def test_a_ball_that_hardly_presses_on_its_plane_touches_it_in_a_point(bond):
     assert worst(found.measures, drop_on_plane(bond, 180), ("height", "p_base")) <= 1e-3
 
 
-def test_a_ball_that_does_not_press_on_its_plane_is_refused():
+@pytest.mark.parametrize("model", ["eighth", "full"])
+def test_a_ball_without_weight_touches_its_plane_in_a_point(model):
     """P2"""
-    with pytest.raises(iga.SceneError, match=r"contact_angle = 180.*give such gravity"):
-        droplet(180, 0.0)
+    found = iga.solve(droplet(180, 0.0, model=model))
+    x = found.surface.grid(65, 65, 1).position
+    assert np.abs(np.linalg.norm(x - [0.0, 0.0, 1.0], axis=-1) - 1.0).max() < 1e-7
+    assert found.measures["pressure"] == pytest.approx(2.0, abs=1e-10)
+    # it has not moved along the plane
+    net = found.surface.points[:, :2]
+    assert np.abs(net.max(axis=0) + net.min(axis=0)).max() < 1e-8
+    assert found.measures["contact_radius"] < 1e-3
+    assert any("rolls along x and y and lifts off" in text for text in found.warnings)
 
 
 @pytest.mark.parametrize(
