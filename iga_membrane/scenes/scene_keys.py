@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, TypedDict
 
-from ..checks import choice, integer, number, suggestion
+from ..checks import choice, flag, integer, number, suggestion
 from ..errors import SceneError
 from .liquid import MODELS
 from .whole_membrane import WholeMembrane
@@ -25,7 +25,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "rings": ("radius", "half_height", "volume", "pressure"),
     "discretization": ("space", "degree", "elements", "model"),
     "solver": ("motion", "stabilization", "contact", "penalty", "penetration_tolerance",
-               "contact_line", "start", "max_cpu_s", "max_memory_gb"),
+               "contact_line", "start", "follow_instability", "max_cpu_s", "max_memory_gb"),
     "path": ("parameter", "values"),
 }  # fmt: skip
 
@@ -78,9 +78,8 @@ def check_numbers(label: str, table: Mapping[str, Any]) -> None:
         if key in texts:
             if not isinstance(value, str):
                 raise SceneError(f"{field} = {value!r}: must be text")
-        elif key == "liquid_weight":
-            if not isinstance(value, bool):
-                raise SceneError(f"{field} = {value!r}: must be true or false")
+        elif key in ("liquid_weight", "follow_instability"):
+            flag(field, value)
         elif key in ("degree", "elements"):
             least, most = (1, 4) if key == "degree" else (3, 4096)
             integer(field, value, least=least, most=most)

@@ -264,5 +264,7 @@ def solver_limits(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
     limits: dict[str, Any] = {
         key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table
     }
+    if "follow_instability" in table:
+        limits["follow_instability"] = table["follow_instability"]
     start = table.get("start", "auto")
     return limits | {"start": start} if start.endswith(".npz") else limits

@@ -43,6 +43,8 @@ from .trimmed_audit import trimmed_audit
 
 GRACE = 0.05
 """Part of the CPU limit beyond it that the evidence may take."""
+UNSTABLE = frozenset({Status.CONVERGED_SADDLE, Status.CONVERGED_MARGINAL})
+"""Equilibria whose softest motion is of interest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +123,7 @@ def conclude(
         body=assembly.density(multipliers),
         index=verdict.index if verdict else None,
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
+        mode=_mode(scene, assembly, surface, verdict) if status in UNSTABLE else None,
         audit=checked,
         volume_error=_volume_error(scene, inside),
         hold_force=hold,
@@ -139,6 +142,17 @@ def conclude(
         },
         warnings=_warnings(scene, contact),
     )
+
+
+def _mode(
+    scene: Scene, assembly: Assembly, surface: Surface, verdict: Stability | None
+) -> Array | None:
+    """(count, 3) the softest motion of the control points in world axes, the largest 1."""
+    if verdict is None:
+        return None
+    motion = assembly.displacement(assembly.motion(surface), verdict.mode)
+    largest = np.linalg.norm(motion, axis=1).max()
+    return np.asarray(motion @ scene.units.axes.T / largest)
 
 
 def _examined(

@@ -27,6 +27,9 @@ class SolverOptions:
     max_cpu_s : CPU seconds after which the solve stops, INTERRUPTED.
     max_memory_gb : a scene whose matrices would need more is refused.
     audit : whether to check the result on an independent path; without it, UNVERIFIED.
+    follow_instability : whether to go on from an unstable equilibrium, along its softest mode, to
+        the next one below (:mod:`.saddle`), within the symmetry of the model. The way is not the
+        droplet's own: of several stable states it may find another than the liquid would.
     start : a state file to start from, or to go on from where a path of loads was interrupted.
     checkpoint : a state file to be written after every converged load step. Its folder is checked
         before any work; a disk that fills up later is a warning, and the step before stays.
@@ -39,6 +42,7 @@ class SolverOptions:
     max_cpu_s: float = 600.0
     max_memory_gb: float = 8.0
     audit: bool = True
+    follow_instability: bool = False
     start: str | Path | None = None
     checkpoint: str | Path | None = None
 
@@ -51,6 +55,7 @@ class SolverOptions:
         number("solver.max_cpu_s", self.max_cpu_s, above=0.0)
         number("solver.max_memory_gb", self.max_memory_gb, above=0.0)
         flag("solver.audit", self.audit)
+        flag("solver.follow_instability", self.follow_instability)
         for name in ("start", "checkpoint"):
             path = getattr(self, name)
             if path is not None and Path(path).suffix != ".npz":

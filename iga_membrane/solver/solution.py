@@ -36,6 +36,8 @@ class Solution:
     body : energy per volume of the Lagrangian in local, dimensionless units: minus the pressure.
     index : negative eigenvalues; lambda_min : smallest one (tension over squared length). After a
         failed solve both, like the audit, are those of the best state found.
+    mode : (count, 3) motion of the control points with that eigenvalue, in world axes, its largest
+        one 1, either way; of a saddle or a marginal state, else None.
     audit : relative defects found by the independent check, or None.
     hold_force : (3,) total force that holds the centroid.
     forces : on each particle.
@@ -73,6 +75,7 @@ class Solution:
     kind: str | None = None
     volume_error: float | None = None
     progress: Progress | None = field(default=None, repr=False)
+    mode: Array | None = field(default=None, repr=False)
 
     @property
     def success(self) -> bool:

@@ -22,6 +22,7 @@ from .newton import NewtonOptions, NewtonResult, newton
 from .options import ON_FAIL, SolverOptions
 from .predictor import first, settings_of
 from .quasi_static import quasi_static
+from .saddle import check_followed, followed
 from .solution import Solution, with_effort
 from .state import fits, journal_of, start_surface
 from .status import Status
@@ -64,6 +65,8 @@ def solve(
     record("options", options, SolverOptions)
     choice("on_fail", on_fail, ON_FAIL)
     options.check_folder()
+    if options.follow_instability:
+        check_followed(scene)
     started = process_time()
     if scene.free_particles is not None:
         return _delivered(_with_free_particles(scene, options, started), on_fail)
@@ -104,6 +107,8 @@ def solve(
             steps = [*outcome.steps, *path.steps]
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
             solution = conclude(outcome, assembly, options, started)
+    if options.follow_instability and solution.status is Status.CONVERGED_SADDLE:
+        solution = followed(solution, outcome, assembly, settings, options, started)
     return _delivered(replace(solution, scene=scene), on_fail)
 
 

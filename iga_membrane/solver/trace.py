@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from ..arrays import Array
 from ..checks import choice, path_values
-from ..errors import SolveError, StateError
+from ..errors import SceneError, SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from ..tables import column, dataframe, dataset
 from ..terms import Contact, TrimmedContactLine
@@ -108,7 +108,7 @@ def trace(
     Raises
     ------
     SceneError
-        Fewer than two values, too many, or one that is not a number.
+        Fewer than two values, too many, or one that is not a number; ``follow_instability``.
     StateError
         If ``options.start`` is not the state of this path.
     OutputError
@@ -132,6 +132,8 @@ def walk(
     ramp: Ramp, options: SolverOptions, report: Callable[[float], None] = lambda load: None
 ) -> list[Solution]:
     """Solutions at the ramp's values; the last one says how the walk ended."""
+    if options.follow_instability:
+        raise SceneError("solver.follow_instability: not available yet along a path; leave it out")
     started = process_time()
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
         return _each(ramp, options, started, report)

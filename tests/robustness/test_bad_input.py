@@ -146,7 +146,7 @@ def test_every_field_refuses_a_wrong_type(table, key, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     if key in TEXTS:
         wrong = [5, True]
-    elif key == "liquid_weight":
+    elif key in ("liquid_weight", "follow_instability"):
         wrong = [1, "true"]
     else:
         wrong = ["1", "72 mN/m", "1 uL", "1 banana", EXPRESSION, True]
@@ -186,6 +186,7 @@ OUT = {
     "offset": ([0],),
     "values": ([], [1.0], [1.0, 1.0], [0.1] * 10_001),
     "liquid_weight": ("yes",),
+    "follow_instability": ("yes",),
     "parameter": ("sheet", "sheet.pressur"),
 } | {key: ("no such word",) for key in TEXTS if key != "parameter"}
 FREE = {("sheet", "pressure"), ("sheet", "volume"), ("cell", "pressure"), ("rings", "pressure")}

@@ -22,7 +22,7 @@ GOOD = {
     "substrate": {"kind": "plane", "contact_angle": 150.0},
     "droplet": {"hold": "none"},
     "discretization": {"space": "bspline", "degree": 3, "elements": 8, "model": "eighth"},
-    "solver": {"max_cpu_s": 60.0, "max_memory_gb": 1.0},
+    "solver": {"max_cpu_s": 60.0, "max_memory_gb": 1.0, "follow_instability": True},
 }
 
 
@@ -47,7 +47,8 @@ def refusal(data):
 def test_the_good_scene_is_read():
     file = iga.read_scene(GOOD)
     assert file.scene.kind == "sessile_droplet"
-    assert file.solver == {"max_cpu_s": 60.0, "max_memory_gb": 1.0}
+    limits = {"max_cpu_s": 60.0, "max_memory_gb": 1.0, "follow_instability": True}
+    assert file.solver == limits
     assert file.scene.description["substrate"]["contact_angle"] == 150.0
 
 
