@@ -173,9 +173,10 @@ def main() -> None:
         "## Exact contact against a penalty, r_s = 0.05",
         "",
         "Penalty as in paper eq. (24), in units of tension over R squared; default mesh; a "
-        "penetration of 0.2 r_s is allowed. The prediction is (p + 2 gamma / r_s) / penalty. The "
-        "default mesh of a hard penalty is finer, so that the membrane dips less between "
-        "quadrature points than a fifth of it.",
+        "penetration of 0.2 r_s is allowed. The prediction is (p + 2 gamma / r_s) / penalty. Hard "
+        "penalties act through multipliers that give way, and the membrane is lifted until it dips "
+        "no deeper beside their points; that takes the place of a finer mesh, and raises the "
+        "droplet by as much as it dipped.",
         "",
         *against_penalty(),
         "",
