@@ -116,7 +116,9 @@ def sessile_droplet(
     if grains or penalty is not None or start is not None:
         contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
     else:
-        contact_line, *others = asperity_lines(substrate, length, contact_line)
+        local = acceleration @ axes
+        pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
+        contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
     with np.errstate(over="ignore", invalid="ignore"):

@@ -14,15 +14,18 @@ CLEAR = 1.1
 """Distance of the other asperities from the middle of the weightless cap, over its radius."""
 
 
-def discretizations(solid: Solid | None, length: float, contact_line: str) -> tuple[str, ...]:
+def discretizations(
+    solid: Solid | None, length: float, pushed: bool, contact_line: str
+) -> tuple[str, ...]:
     """How the membrane meets asperities, the first choice first and then what is tried where it
     fails.
 
     Parameters
     ----------
     length : of a droplet, the radius of a ball of its volume.
+    pushed : whether gravity pushes it off its asperity, to others.
     """
-    if contact_line != "auto" or _alone(solid, length) is None:
+    if contact_line != "auto" or pushed or _alone(solid, length) is None:
         return (contact_line,)
     assert solid is not None
     resolved = np.min(solid.contact_angle) <= SHARP

@@ -83,6 +83,11 @@ def on_the_plane(parts: Question) -> Foot:
 
 def _on_a_point(parts: Question, mesh: Mesh, sector: Sector) -> Foot:
     """A sphere that touches the plane, but for a hole too small to matter, whose rim is held."""
+    if "z" in parts.held:
+        raise SceneError(
+            'droplet.hold = "xyz": a droplet at 180 degrees without gravity touches its plane in a '
+            'point, which holds it already; take "xy" or "none"'
+        )
     local = least_energy_pancake(180.0 - POINT, 0.0, BALL, steepest=180.0)
     rest = Rest(local, 0.0, PlaneContactLine(parts.liquid.surface_tension, 180.0), Sliding("xi2=0"))
     start = _start(rest, mesh, Grading(), parts.scale)

@@ -145,7 +145,10 @@ def _either(
     log.info("%s: %s; in another discretization", one.status.name, one.message)
     left = max(started + options.max_cpu_s - process_time(), 1e-3)
     own = replace(options, max_cpu_s=left, start=None)
-    two = solve(other(), own, on_fail="return", report=report)
+    try:
+        two = solve(other(), own, on_fail="return", report=report)
+    except SceneError as error:
+        return replace(one, message=f"{one.message}; in another discretization: {error}")
     told = two if two.status in DECIDED or one.status not in DECIDED else one
     found = with_effort(told, [one, two])
     if told.success:

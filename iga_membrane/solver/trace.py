@@ -134,6 +134,11 @@ def walk(
     """Solutions at the ramp's values; the last one says how the walk ended."""
     if options.follow_instability:
         raise SceneError("solver.follow_instability: not available yet along a path; leave it out")
+    if any(ramp(load).free_edge is not None for load in ramp.stops):
+        raise SceneError(
+            "path: not available at 180 degrees on a plane, where the edge of the foot is searched "
+            "for at every value; solve the scenes one by one (sweep), or stay below 180"
+        )
     started = process_time()
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
         return _each(ramp, options, started, report)

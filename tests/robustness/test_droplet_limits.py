@@ -67,6 +67,8 @@ def test_a_ball_without_weight_touches_its_plane_in_a_point(model):
     assert np.abs(net.max(axis=0) + net.min(axis=0)).max() < 1e-8
     assert found.measures["contact_radius"] < 1e-3
     assert any("rolls along x and y and lifts off" in text for text in found.warnings)
+    with pytest.raises(iga.SceneError, match="holds it already"):
+        droplet(180, 0.0, hold="xyz")
 
 
 @pytest.mark.parametrize(

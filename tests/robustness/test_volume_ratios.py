@@ -51,6 +51,32 @@ def test_a_droplet_that_spreads_to_other_asperities_is_not_on_one_alone():
     assert found.kind == "touches another asperity"
 
 
+@pytest.mark.parametrize("radius", [1e-3, 0.01, 0.05])
+def test_a_droplet_that_swallows_another_asperity_is_not_on_one_alone(radius):
+    """Weightless it is clear of it; gravity widens it until the whole sphere is in the liquid."""
+    spheres = iga.Spheres([60.0, 60.0], [(0.0, 0.0, -1.0), (1.2, 0.0, -0.6)], [1.0, radius])
+    given = {"volume": 4.0, "contact_line": "conforming"}
+    found = iga.solve(iga.sessile_droplet(spheres, **given, gravity=0.8), on_fail="return")
+    assert found.status is iga.Status.TOPOLOGY_CHANGE
+    assert found.kind == "touches another asperity"
+    assert iga.solve(iga.sessile_droplet(spheres, **given)).contact["wet_solids"] == 1
+
+
+def test_a_pushed_droplet_is_not_thought_to_stay_on_its_asperity():
+    lattice, push = iga.SphereLattice(120.0, 1.0, 3.0), (0.3, 0.0, -0.3)
+    held = iga.sessile_droplet(lattice, volume=4.0, gravity=push, hold="x")
+    assert held.surface.space.pole is not None
+    assert iga.sessile_droplet(lattice, volume=4.0, gravity=push).surface.space.pole is None
+
+
+def test_a_second_mesh_that_is_refused_leaves_the_first_answer():
+    scene = on_lattice(180.0, 1.0)
+    less = iga.SolverOptions(max_memory_gb=0.04)
+    found = iga.solve(scene, less, on_fail="return")
+    assert found.status is iga.Status.UNDERRESOLVED
+    assert "max_memory_gb" in found.message
+
+
 @pytest.mark.slow
 def test_no_limit_is_claimed_for_a_droplet_that_only_leaves_its_asperity():
     found = iga.solve(on_lattice(90.0, 8.0, contact_line="conforming"), on_fail="return")
