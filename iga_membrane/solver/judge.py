@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..scenes.scene import Scene
 from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..surface.inside import inside
 from ..surface.surface import Surface
 from ..terms import Centroid, Contact
 from .assembly import Assembly
@@ -209,7 +210,9 @@ def leaves_its_asperity(
     at = solid.nearest(x)
     met = at.which[(at.gap < 0.0) & (at.which != own)]
     others = np.setdiff1d(solid.within(float(np.linalg.norm(x[..., :2], axis=-1).max())), own)
-    swallowed = _inside(x, sphere_of(scene), solid.center_of(others))
+    sphere = sphere_of(scene)
+    assert sphere is not None
+    swallowed = _swallowed(x, sphere, solid.center_of(others))
     if not (met.size or swallowed.any()):
         return None
     kind = "touches_base" if (met < 0).any() else "touches another asperity"
@@ -217,40 +220,18 @@ def leaves_its_asperity(
     return Status.TOPOLOGY_CHANGE, kind, said
 
 
-def _inside(x: Array, sphere: Sphere | None, points: Array) -> Mask:
-    """(k,) whether points (k, 3) lie in the liquid between a membrane and the sphere it stands on.
+def _swallowed(x: Array, sphere: Sphere, points: Array) -> Mask:
+    """(k,) whether points (k, 3) lie in the liquid between a membrane and the sphere it ends on.
 
     Parameters
     ----------
     x : (n, m, 3) points of the membrane, rings from the contact line to its pole.
-
-    Notes
-    -----
-    The solid angle of the closed surface, ``4 pi`` inside and 0 outside, from its triangles (Van
-    Oosterom and Strackee, doi 10.1109/TBME.1983.326207); the wetted cap is a fan round its top.
     """
-    assert sphere is not None
-    center = np.array(sphere.center)
+    center, top = np.array(sphere.center), np.array([0.0, 0.0, 1.0])
     part = np.linspace(0.0, 1.0, 33)[:-1, None]
-    out = (x[:, :1] - center) * part + np.array([0.0, 0.0, sphere.radius]) * (1.0 - part)
+    out = part * (x[:, :1] - center) / sphere.radius + (1.0 - part) * top
     cap = center + sphere.radius * out / np.linalg.norm(out, axis=-1, keepdims=True)
-    closed = np.concatenate([cap, x], axis=1)
-    a, b = closed[:-1, :-1].reshape(-1, 3), closed[1:, :-1].reshape(-1, 3)
-    c, d = closed[1:, 1:].reshape(-1, 3), closed[:-1, 1:].reshape(-1, 3)
-    found = np.zeros(len(points), bool)
-    for k, point in enumerate(points):
-        total = sum(_solid_angle(np.stack(t) - point) for t in ((a, b, c), (a, c, d)))
-        found[k] = abs(total) > 2.0 * np.pi
-    return found
-
-
-def _solid_angle(corners: Array) -> float:
-    """Of triangles (3, k, 3), seen from the origin."""
-    a, b, c = corners
-    la, lb, lc = np.linalg.norm(corners, axis=-1)
-    volume = np.einsum("ki,ki->k", a, np.cross(b, c))
-    ab, bc, ca = (np.einsum("ki,ki->k", p, q) for p, q in ((a, b), (b, c), (c, a)))
-    return float(2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb).sum())
+    return inside(np.concatenate([cap, x], axis=1), points)
 
 
 SAMPLED = 129, 129
