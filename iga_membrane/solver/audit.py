@@ -49,7 +49,7 @@ class Audit:
     residual : norm of the weak form over the norm of its absolute contributions.
     volume : over the prescribed volume; 0 where none is prescribed.
     force : vertical force balance ``p A_wet - line - weight`` over ``p A_wet`` plus the line's
-        force, with the line's force from Young's angle.
+        force, with the line's force from Young's angle; on a sphere the same over the weight.
     sideways : horizontal force of the solids on the liquid over its weight, where gravity has none
         and the model does not rule it out; beside a particle over the same as ``force``.
     line : the same with the line's force from the spline's own tangents: converges slower, so it
@@ -78,6 +78,8 @@ class Audit:
         return {name: value for name, value in vars(self).items() if name != "deepest"}
 
 
+NOTHING = 1e-2
+"""Weight over the forces of line and pressure on a sphere below which these are the measure."""
 AT_A_TIME = 100
 """Elements that are checked at a time: so many fit a processor's cache."""
 
@@ -164,7 +166,7 @@ def audit(
     if not lines:
         depth = max(0.0, -lowest) / surface.size
         return Audit(residual, missing_volume(terms, inside), penetration=depth)
-    cosine, sunk, depth, pull = 0.0, 0.0, 0.0, np.zeros(3)
+    cosine, sunk, depth, pull, carried = 0.0, 0.0, 0.0, np.zeros(3), 0.0
     place, foot = None, None
     for term in lines:
         sphere = term.sphere if isinstance(term, SphereContactLine) else None
@@ -178,12 +180,19 @@ def audit(
             continue
         cap = WettedCap(line, term.sphere, term.toward)
         inside -= cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
-        pull += _pull(cap, body, tension)
+        line_pull = _line_pull(cap, tension)
+        pull += line_pull + cap.push(body)
+        carried += float(abs(line_pull[2]) + abs(cap.push(body)[2]))
         away = float(np.abs(term.sphere.gap(line.position)).max())
         sunk = max(sunk, away / term.sphere.radius, -gap / term.sphere.radius)
     missing = missing_volume(terms, inside)
     if foot is None:
-        return Audit(residual, missing, angle=cosine, penetration=sunk, deepest=place)
+        open_force = 0.0
+        if stands_free(scene):
+            # of the weight, unless it is nothing beside what balances at the line
+            weight = float(body.gradient[2] * inside)
+            open_force = abs(weight + float(pull[2])) / max(abs(weight), NOTHING * carried, TINY)
+        return Audit(residual, missing, open_force, angle=cosine, penetration=sunk, deepest=place)
     if any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports):
         return Audit(residual, missing, angle=cosine, penetration=depth, deepest=place)
     angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
@@ -205,13 +214,13 @@ def audit(
     )
 
 
-def _pull(cap: WettedCap, body: BodyDensity, tension: float) -> Array:
-    """(3,) force of membrane and liquid on a sphere, the membrane at Young's angle: along
+def _line_pull(cap: WettedCap, tension: float) -> Array:
+    """(3,) force of the membrane on a sphere at Young's angle: along
     ``sin(theta) n + cos(theta) n x t``."""
     line, angle = cap.line, np.radians(cap.sphere.contact_angle)
     normal = cap.sphere.normal(line.position)
     along = np.sin(angle) * normal + np.cos(angle) * np.cross(normal, line.tangent)
-    return np.asarray(tension * line.arc @ along + cap.push(body))
+    return np.asarray(tension * line.arc @ along)
 
 
 def edge_forces(

@@ -102,3 +102,12 @@ def test_line_load_is_the_normal_component_of_the_tension():
     speed = np.linalg.norm(edge.d @ found.surface.points[edge.functions], axis=-1)
     reaction = -per_parameter / speed
     assert reaction == pytest.approx(np.sin(np.radians(110)), rel=1e-3)
+
+
+@pytest.mark.parametrize(("angle", "radius", "bond"), [(20.0, 0.1, 1e-3), (5.0, 1.0, 1e-4)])
+def test_a_droplet_that_nearly_swallows_its_sphere_is_not_said_to_be_carried(angle, radius, bond):
+    """Its line can hardly follow as the droplet sinks: the forces do not balance."""
+    found = iga.solve(on_sphere(angle, radius, bond), on_fail="return")
+    assert found.status is iga.Status.UNDERRESOLVED
+    assert "vertical force balance" in found.message
+    assert iga.solve(on_sphere(angle, radius, 0.0)).audit.force < 1e-3
