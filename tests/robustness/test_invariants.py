@@ -303,7 +303,7 @@ def outcomes(seed, count, kinds):
             yield extreme, record, *score(extreme, record)
 
 
-QUICK = ("droplet", "cap", "contact area", "tilted", "held", "sphere", "heavy on sphere", "film",
+QUICK = ("droplet", "cap", "contact area", "tilted", "held", "sphere", "film",
          "bridge", "cap of volume", "cap of pressure", "sheet", "leaning sheet",
          "cap ends on particle", "droplet ends on particle", "free droplet",
          "pulled droplet")  # fmt: skip
