@@ -220,9 +220,9 @@ def sessile_droplet(
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if others:
-        scene = replace(
-            scene, otherwise=lambda: again(contact_line=others[0], discretization=asked)
-        )
+        # a mesh that was chosen for one asperity says nothing of another's discretization
+        mesh = asked if grains else Discretization()
+        scene = replace(scene, otherwise=lambda: again(contact_line=others[0], discretization=mesh))
     if grains:
         line, gamma = built.terms[-1], liquid.surface_tension
         if built.alone is None:
@@ -239,8 +239,8 @@ def sessile_droplet(
         toward = np.atleast_2d(np.array(line.toward))
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if built.directions is not None and asked.elements is None and start is None:
-        mesh = replace(asked, model=sector.model, elements=2 * built.mesh.elements)
-        scene = replace(scene, finer=lambda: again(discretization=mesh))
+        twice = replace(asked, model=sector.model, elements=2 * built.mesh.elements)
+        scene = replace(scene, finer=lambda: again(discretization=twice))
     if built.predictor:
         return from_another_angle(scene, terms, built)
     if not built.tangent:

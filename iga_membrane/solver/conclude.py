@@ -243,7 +243,7 @@ def _warnings(scene: Scene, contact: Mapping[str, Any]) -> tuple[str, ...]:
         if wet == 1:
             moves = "slides off it" if any(scene.acceleration) else "rolls on it freely"
             texts.append(f"a droplet on one sphere {moves}: {judged}")
-        elif wet and wet <= MANY:
+        elif wet and wet <= MANY and not isinstance(scene.substrate, Sphere):
             texts.append(
                 f"a droplet on {wet} asperities may roll to better ones: {judged}; take "
                 'discretization.model = "full" to see it'

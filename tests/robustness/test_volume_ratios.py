@@ -69,6 +69,23 @@ def test_a_pushed_droplet_is_not_thought_to_stay_on_its_asperity():
     assert iga.sessile_droplet(lattice, volume=4.0, gravity=push).surface.space.pole is None
 
 
+def test_the_mesh_of_one_asperity_is_not_taken_for_its_fallback():
+    coarse = on_lattice(120.0, 1.0, discretization=iga.Discretization(elements=12, degree=3))
+    given, own = coarse.otherwise(), on_lattice(120.0, 1.0).otherwise()
+    assert given.surface.space.net_shape == own.surface.space.net_shape
+
+
+def test_a_bridge_between_particles_is_on_no_asperities():
+    pair = [iga.Sphere(50.0, 0.8, (0.0, 0.0, z)) for z in (-1.3, 1.3)]
+    scene = iga.sessile_droplet(
+        None,
+        volume=WATER["volume"],
+        particles=pair,
+        discretization=iga.Discretization(model="quarter"),
+    )
+    assert not any("asperities" in text for text in iga.solve(scene).warnings)
+
+
 def test_a_second_mesh_that_is_refused_leaves_the_first_answer():
     scene = on_lattice(180.0, 1.0)
     less = iga.SolverOptions(max_memory_gb=0.04)
