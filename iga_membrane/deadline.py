@@ -1,4 +1,8 @@
-"""The CPU limit of a solve, asked for between any two pieces of its work."""
+"""The CPU limit of a solve, asked for between any two pieces of its work.
+
+It counts the thread of Python that solves, which does all the work (:mod:`.threads`), and nothing
+that runs beside it.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from math import inf
-from time import process_time
+from time import thread_time
 
 _DEADLINE: ContextVar[float] = ContextVar("deadline", default=inf)
 
@@ -20,7 +24,7 @@ class OutOfTime(Exception):
 
 @contextmanager
 def until(deadline: float) -> Iterator[None]:
-    """Let :func:`check_time` stop what runs inside at a CPU time (``process_time``), or before it
+    """Let :func:`check_time` stop what runs inside at a CPU time (``thread_time``), or before it
     if an earlier one is set already."""
     token = _DEADLINE.set(min(deadline, _DEADLINE.get()))
     try:
@@ -36,5 +40,5 @@ def check_time() -> None:
     ------
     OutOfTime
     """
-    if process_time() > _DEADLINE.get():
+    if thread_time() > _DEADLINE.get():
         raise OutOfTime

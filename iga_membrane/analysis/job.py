@@ -16,9 +16,9 @@ from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
 from ..solver.result_file import result
 from ..solver.solve import solve
+from ..threads import one_thread
 from .lanes import WorkerStartError
-from .record_store import LAPSE, Record, RecordStore, this_process
-from .threads import stay_on_one_thread
+from .record_store import LAPSE, Record, RecordStore
 
 log = logging.getLogger("iga_membrane")
 
@@ -74,7 +74,7 @@ class Job:
                         if key not in self._found:
                             waiting.append(key)
                         continue
-                    arguments = self._scene_of, self._left[key], self._options, this_process()
+                    arguments = self._scene_of, self._left[key], self._options
                     running[pool.submit(solve_point, *arguments)] = key
                 if not running:
                     time.sleep(0.2)  # other processes compute what is left
@@ -138,12 +138,11 @@ class Job:
         return True
 
 
+@one_thread  # the making of the scene too
 def solve_point(
-    scene_of: Callable[..., Scene], point: dict[str, Any], options: SolverOptions, caller: str
+    scene_of: Callable[..., Scene], point: dict[str, Any], options: SolverOptions
 ) -> Record:
-    """One point, in a worker of a caller: its result, or why there is none."""
-    if this_process() != caller:
-        stay_on_one_thread()
+    """One point, in a worker: its result, or why there is none."""
     record: Record = {"parameters": point, "question": question_of(options)}
     try:
         scene = scene_of(**point)

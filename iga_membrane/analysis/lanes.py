@@ -13,8 +13,6 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from .threads import children_on_one_thread
-
 STARTING = 120.0
 """Seconds within which a worker must have started."""
 
@@ -31,8 +29,7 @@ class ProcessLanes(Executor):
     """Processes side by side, each a pool of its own.
 
     A worker that dies takes only its own call with it, one that exceeds the time is killed, and
-    either is replaced. Workers run their libraries on one thread, leave Ctrl-C to their parent, and
-    end when it is gone.
+    either is replaced. Workers leave Ctrl-C to their parent and end when it is gone.
 
     Parameters
     ----------
@@ -106,12 +103,11 @@ class _Lane:
             raise WorkerLostError("the sweep was stopped")
         method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else None
         context = multiprocessing.get_context(method)
-        with children_on_one_thread():
-            self._pool = ProcessPoolExecutor(1, context, _prepare)
-            try:
-                self._pid = self._pool.submit(os.getpid).result(STARTING)
-            except (BrokenProcessPool, TimeoutError) as error:
-                raise WorkerStartError("processes cannot be started here") from error
+        self._pool = ProcessPoolExecutor(1, context, _prepare)
+        try:
+            self._pid = self._pool.submit(os.getpid).result(STARTING)
+        except (BrokenProcessPool, TimeoutError) as error:
+            raise WorkerStartError("processes cannot be started here") from error
 
     def _drop(self) -> None:
         pool, self._pool = self._pool, None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from time import process_time
+from time import thread_time
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -90,10 +90,10 @@ def pull_off(
             'choose "normal"'
         )
     way, number = float(np.sign(free.outward[0])), int(free.which[0])
-    until = process_time() + options.max_cpu_s
+    until = thread_time() + options.max_cpu_s
 
     def solve_fixed(at: Scene) -> Solution:
-        left = max(until - process_time(), 1e-3)
+        left = max(until - thread_time(), 1e-3)
         return solve(at, replace(options, max_cpu_s=left), on_fail="return")
 
     places, radius, line = Places(free, solve_fixed), float(free.radii[0]), free.lines[0]

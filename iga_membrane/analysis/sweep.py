@@ -139,7 +139,7 @@ def sweep(
     over : name to values; the grid is their product, the last name varying fastest.
     out : folder of the records; without it nothing is kept.
     executor : any ``concurrent.futures.Executor``, of Dask or MPI too; by default processes of this
-        machine. Other processes than this one run their libraries on one thread.
+        machine. Every point runs BLAS on one thread.
     workers : number of processes of the default executor (the processors), or of workers that
         another one has; twice as many points are claimed and handed out at a time (else 64).
     timeout : seconds per point, of the default executor.

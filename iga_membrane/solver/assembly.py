@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from time import process_time
+from time import thread_time
 
 import numpy as np
 
@@ -63,13 +63,13 @@ class Assembly(Functional):
 
     def __init__(self, scene: Scene, points: int | None = None) -> None:
         super().__init__(scene, points)
-        before = process_time()
+        before = thread_time()
         self._kernels = None
         if not isinstance(self.spines, Cartesian):
             self._kernels = vary.compiled_kernels(len(self.table.functions))
         if self._kernels is not None:
             self._kernels.warm_up()
-        self.compile_seconds = process_time() - before
+        self.compile_seconds = thread_time() - before
 
     @property
     def conservative(self) -> bool:
@@ -136,13 +136,13 @@ class Assembly(Functional):
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
         """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
-        start = process_time()
+        start = thread_time()
         points = surface.points
         at = vary.element_points(self.table, points)
         energies = self.energies_at(points, at)
         first = self._first_order(points, directions, at)
         matrix = self._second_order(points, directions, at, multipliers)
-        self.seconds += process_time() - start
+        self.seconds += thread_time() - start
         scale = first.scale + np.abs(first.columns) @ np.abs(multipliers)
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
         shifts = len(self.spines.shifts)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from time import process_time
+from time import thread_time
 from typing import Any
 
 import numpy as np
@@ -110,7 +110,7 @@ def conclude(
         status, kind, message = left
     scale = scene.units
     contact = contact_record(scene, assembly, result, found, checked)
-    total = process_time() - started - assembly.compile_seconds
+    total = thread_time() - started - assembly.compile_seconds
     return Solution(
         scene=scene,
         status=status,

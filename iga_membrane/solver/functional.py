@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from time import process_time
+from time import thread_time
 
 import numpy as np
 
@@ -191,10 +191,10 @@ class Functional:
 
     def energies(self, surface: Surface) -> Energies:
         """Energy and constraints of a state."""
-        start = process_time()
+        start = thread_time()
         points = surface.points
         found = self.energies_at(points, vary.element_points(self.table, points))
-        self.seconds += process_time() - start
+        self.seconds += thread_time() - start
         return found
 
     def energies_at(self, points: Array, at: vary.ElementPoints) -> Energies:

@@ -18,6 +18,7 @@ from scipy.sparse import csr_array
 
 from ..arrays import Array, Index, Mask
 from ..deadline import check_time
+from ..threads import one_thread
 from .inverse_root import InverseRoot, SingularMatrix
 
 LEAF = 96
@@ -115,6 +116,7 @@ class Multifrontal:
         If a front is singular or entries are not finite.
     """
 
+    @one_thread  # scipy brings a BLAS of its own, here at the latest
     def __init__(self, elimination: Elimination, data: Array) -> None:
         self._elimination = elimination
         self.negative = 0

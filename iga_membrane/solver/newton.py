@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass, field
-from time import process_time
+from time import thread_time
 
 import numpy as np
 
@@ -66,7 +66,7 @@ class NewtonOptions:
     step_limit : largest displacement of a control point in one step.
     polish_below : steps smaller than this are followed by a last walk by arc length.
     near : relative residual below which an unstable equilibrium is approached, not fled.
-    deadline : CPU time (``process_time``) after which to stop.
+    deadline : CPU time (``thread_time``) after which to stop.
     phase : what its iterations are called in a log.
     """
 
@@ -194,7 +194,7 @@ def _iterate(
         flee = flee or (approached is not None and residual > approached and options.near < 1.0)
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
-        before = process_time()
+        before = thread_time()
         farthest = np.inf
         if assembly.contact is not None:
             farthest = (reach if steady else HELD) * assembly.contact.length
@@ -203,7 +203,7 @@ def _iterate(
         except SingularMatrix:
             result.iterations.append(Iteration(residual, 0.0, 0.0, 0.0))
             raise
-        result.linear_seconds += process_time() - before
+        result.linear_seconds += thread_time() - before
         result.index = direction.index
         approached = residual if direction.index > 0 and not direction.shift else None
         displacement = assembly.displacement(motion, direction.step)

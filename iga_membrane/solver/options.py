@@ -24,7 +24,7 @@ class SolverOptions:
     min_load_step : load stepping stops below this part of the load.
     quadrature : Gauss points per direction; if None ``degree + 1``, but ``degree`` (at least 3)
         round a smooth ring.
-    max_cpu_s : CPU seconds after which the solve stops, INTERRUPTED.
+    max_cpu_s : CPU seconds of the solve's own thread after which it stops, INTERRUPTED.
     max_memory_gb : a scene whose matrices would need more is refused.
     audit : whether to check the result on an independent path; without it, UNVERIFIED.
     follow_instability : whether to go on from an unstable equilibrium, along its softest mode, to

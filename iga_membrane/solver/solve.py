@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import replace
-from time import process_time
+from time import thread_time
 from typing import Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from ..checks import choice, record
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
+from ..threads import one_thread
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
@@ -31,6 +32,7 @@ from .trace import walk
 log = logging.getLogger("iga_membrane")
 
 
+@one_thread
 def solve(
     scene: Scene,
     options: SolverOptions | None = None,
@@ -67,7 +69,7 @@ def solve(
     options.check_folder()
     if options.follow_instability:
         check_followed(scene)
-    started = process_time()
+    started = thread_time()
     if scene.free_particles is not None:
         return _delivered(_with_free_particles(scene, options, started), on_fail)
     asked = scene.ramp is not None and scene.ramp.asked
@@ -138,12 +140,12 @@ def _either(
     """
     if options.start is not None and not fits(options.start, first):
         return solve(other(), options, on_fail="return", report=report)
-    started = process_time()
+    started = thread_time()
     one = solve(first, options, on_fail="return", report=report)
     if one.status not in ends:
         return one
     log.info("%s: %s; in another discretization", one.status.name, one.message)
-    left = max(started + options.max_cpu_s - process_time(), 1e-3)
+    left = max(started + options.max_cpu_s - thread_time(), 1e-3)
     own = replace(options, max_cpu_s=left, start=None)
     try:
         two = solve(other(), own, on_fail="return", report=report)
@@ -162,7 +164,7 @@ def _with_free_particles(scene: Scene, options: SolverOptions, started: float) -
     """The equilibrium of a scene whose particles move; every solve within one limit."""
 
     def solve_fixed(at: Scene) -> Solution:
-        left = max(started + options.max_cpu_s - process_time(), 1e-3)
+        left = max(started + options.max_cpu_s - thread_time(), 1e-3)
         return solve(at, replace(options, max_cpu_s=left, start=None), on_fail="return")
 
     if options.start is not None:

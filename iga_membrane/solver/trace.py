@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from time import process_time
+from time import thread_time
 from typing import Any, Literal
 
 from ..arrays import Array
@@ -13,6 +13,7 @@ from ..errors import SceneError, SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from ..tables import column, dataframe, dataset
 from ..terms import Contact, TrimmedContactLine
+from ..threads import one_thread
 from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
@@ -84,6 +85,7 @@ class Path:
         return [{self.parameter: value, **solution.row()} for value, solution in pairs]
 
 
+@one_thread
 def trace(
     scene_at: Callable[[float], Scene],
     values: Sequence[float],
@@ -139,7 +141,7 @@ def walk(
             "path: not available at 180 degrees on a plane, where the edge of the foot is searched "
             "for at every value; solve the scenes one by one (sweep), or stay below 180"
         )
-    started = process_time()
+    started = thread_time()
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
         return _each(ramp, options, started, report)
     first_scene = ramp(0.0)

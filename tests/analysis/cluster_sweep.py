@@ -4,8 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from analysis.sweep_scenes import Deadly
-from threadpoolctl import threadpool_info
+from analysis.sweep_scenes import Deadly, threads
 
 import iga_membrane as iga
 
@@ -13,7 +12,7 @@ ANGLES = [40.0 + 10.0 * k for k in range(8)]
 
 
 class OnOneThread(Deadly):
-    """Dies once at one angle; not built by a worker whose libraries run on several threads."""
+    """Dies once at one angle; not built by a worker whose BLAS runs on several threads."""
 
     def __init__(self, deadly, folder):
         super().__init__(deadly, folder)
@@ -21,8 +20,7 @@ class OnOneThread(Deadly):
 
     def __call__(self, angle):
         if os.getpid() != self.caller:
-            assert os.environ["OMP_NUM_THREADS"] == "1"
-            assert {pool["num_threads"] for pool in threadpool_info()} == {1}
+            threads(angle)
         return super().__call__(angle)
 
 
