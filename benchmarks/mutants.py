@@ -1,4 +1,4 @@
-"""Would the tests notice? Thirty faults, each put by hand into a copy of the package.
+"""Would the tests notice? Thirty-two faults, each put by hand into a copy of the package.
 
 ``OMP_NUM_THREADS=1 python benchmarks/mutants.py`` flips a sign, drops a factor or skips a term of
 the energies and of the audit, runs the tests that ought to mind, and prints what caught it.
@@ -21,7 +21,8 @@ TERMS = ("terms", "solver/test_derivatives.py", "solver/test_solve.py",
          "verification/test_bridge_between_particles.py",
          "verification/test_whole_membrane.py")  # fmt: skip
 SPOTS = ("solids/test_wet_spot.py", "solver/test_point_supports.py")
-AUDIT = ("robustness/test_audit.py", "robustness/test_never_wrong_silently.py",
+AUDIT = ("robustness/test_audit.py", "robustness/test_evidence.py",
+         "robustness/test_never_wrong_silently.py",
          "verification/test_sheet_on_particle.py")  # fmt: skip
 
 MUTANTS = [
@@ -48,13 +49,16 @@ MUTANTS = [
     ("solids/wet_spot.py", "before & (depth > lowest)", "before & (depth < lowest)"),
     ("terms/edge_gap.py", "n, n, bend, load", "n, n, bend, -load"),
     ("solver/audit.py", "float(np.linalg.norm(total[:-1])) / size", "0.0 / size"),
-    ("solver/audit.py", "abs(carried + weight + lift)", "abs(carried - weight + lift)"),
+    ("solver/audit.py", "abs(loads.push + sum(others))", "abs(loads.push - sum(others))"),
     ("solver/audit.py", "pull = -contact.table", "pull = contact.table"),
     ("solver/audit.py", "return max(0.0, -lowest) / contact.length", "return 0.0 * contact.length"),
     ("solver/audit.py", "abs(inside - held.target) / held.value", "0.0 * held.value"),
-    ("solver/audit.py", "+ term.strength / tension\n", "- term.strength / tension\n"),
+    ("solver/audit.py", "cosine_error(line, -term.strength / tension)",
+     "cosine_error(line, term.strength / tension)"),
     ("solver/audit.py", "forces.push - forces.line - weight", "forces.push - forces.line"),
-    ("solver/judge.py", "if not value <= most:", "if False:"),
+    ("solver/balance.py", "return abs(sum(forces))", "return 0.0 * abs(sum(forces))"),
+    ("solver/trimmed_audit.py", "abs(loads.push + pulls[1])", "0.0 * abs(loads.push)"),
+    ("solver/evidence.py", "not abs(self.value) <= self.limit", "False"),
 ]  # fmt: skip
 
 

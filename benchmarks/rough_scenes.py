@@ -31,6 +31,11 @@ def scattered(seed: int, radii: tuple[float, ...], distance: float, reach: float
     return iga.Spheres(contact_angle=180.0, centers=centers, radii=sizes)
 
 
+def told(defect: float | None) -> str:
+    """A defect in a table; "n/a" where no evidence of it was gathered."""
+    return "n/a" if defect is None else f"{defect:.1e}"
+
+
 def scenes() -> Iterator[tuple[str, object, float]]:
     """Name, substrate and Bond number of each."""
     for bond in (0.5, 1.0, 2.0):
@@ -57,7 +62,7 @@ def main() -> None:
             f"| {name} | {bond:g} | {s.scene.sector.model} | {s.unknowns} | {s.status.name} | "
             f"{s.contact['wet_solids']} | {s.newton_iterations} | {s.cpu_seconds['solve']:.1f} | "
             + (f"{s.lambda_min:.3f}" if s.lambda_min is not None else "-")
-            + (f" | {audit.penetration:.1e} | {audit.force:.0e} |" if audit else " | - | - |")
+            + f" | {told(audit and audit.penetration)} | {told(audit and audit.force)} |"
         )
         print(rows[-1], flush=True)
     text = "\n".join(

@@ -7,7 +7,8 @@ Nothing assembled by the solver is reused: doubled quadrature, the geometry of
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -33,50 +34,13 @@ from ..terms import (
     Volume,
 )
 from .assembly import TINY
+from .balance import Loads, line_balance
 from .contact import ContactSet
-from .contact_line import contact_line, vertical_forces
+from .contact_line import ContactLine, contact_line, vertical_forces
+from .evidence import Audit
 from .measures import sphere_of
 from .point_supports import PointSupports
 from .wetted_cap import WettedCap
-
-
-@dataclass(frozen=True)
-class Audit:
-    """Defects of a state, all relative.
-
-    Attributes
-    ----------
-    residual : norm of the weak form over the norm of its absolute contributions.
-    volume : over the prescribed volume; 0 where none is prescribed.
-    force : vertical force balance ``p A_wet - line - weight`` over ``p A_wet`` plus the line's
-        force, with the line's force from Young's angle; on a sphere the same over the weight.
-    sideways : horizontal force of the solids on the liquid over its weight, where gravity has none
-        and the model does not rule it out; beside a particle over the same as ``force``.
-    line : the same with the line's force from the spline's own tangents: converges slower, so it
-        tells how well the line is resolved.
-    angle : mean cosine of the measured contact angle minus that of Young's.
-    penetration : depth in the solid on a sampling four times denser than the quadrature, over the
-        scene's length (plane) or the sphere's radius; there also the line's distance from it.
-    indentation : the same of a particle beside a plane, over its radius.
-    deepest : the point of the sampling that lies deepest, or nearest to the solid, in the scene's
-        scale; None without a solid.
-    """
-
-    residual: float
-    volume: float = 0.0
-    force: float = 0.0
-    sideways: float = 0.0
-    line: float = 0.0
-    angle: float = 0.0
-    penetration: float = 0.0
-    indentation: float = 0.0
-    deepest: tuple[float, float, float] | None = None
-
-    @property
-    def defects(self) -> dict[str, float]:
-        """Name to value."""
-        return {name: value for name, value in vars(self).items() if name != "deepest"}
-
 
 NOTHING = 1e-2
 """Weight over the forces of line and pressure on a sphere below which these are the measure."""
@@ -109,7 +73,8 @@ def audit(
     tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
-    inside, lift, lowest = 0.0, 0.0, np.inf
+    laws = [term for term in terms if isinstance(term, LocalGap)]
+    loads, lowest = Loads(sector.copies), np.inf
     for first in range(0, len(whole.functions), AT_A_TIME):
         check_time()
         table = whole.part(slice(first, first + AT_A_TIME))
@@ -117,67 +82,110 @@ def audit(
         area = k.area_element * table.weights
         # int gamma a^alpha . u_,alpha dA + int e u . n dA: membrane and pressure
         # and int f a^alpha . u_,alpha + f' grad(gap) . u dA: laws of the gap
-        laws = [term.at(k.position) for term in terms if isinstance(term, LocalGap)]
-        taut = area * (tension + sum(law.value for law in laws))
+        gaps = [law.at(k.position) for law in laws]
+        taut = area * (tension + sum(law.value for law in gaps))
         dual = taut[..., None, None] * k.dual_tangents
-        load = (_density(body, k.position) * area)[..., None] * k.normal
-        for law in laws:
-            load += area[..., None] * law.pull
-            lift += sector.copies * float((law.pull[..., 2] * area).sum())
-            lowest = min(lowest, float(law.at.gap.min()))
+        load = (density_at(body, k.position) * area)[..., None] * k.normal
+        pulled = area[..., None] * sum((law.pull for law in gaps), np.zeros(3))
+        load += pulled
+        loads.add(body, k.position, k.normal, area, pulled)
+        lowest = min([lowest, *(float(law.at.gap.min()) for law in gaps)])
         force = (
             table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
             + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
             + table.values.transpose(0, 2, 1) @ load
         )
         scatter(total, absolute, motion, table.functions, force)
-        inside += sector.copies * float((k.position[..., 2] * k.normal[..., 2] * area).sum())
+    push = np.zeros(3)
     if contact is not None:
-        push = contact.push(contact.touch(surface.points))
-        pull = -contact.table.values.transpose(0, 2, 1) @ push
+        carried = contact.push(contact.touch(surface.points))
+        push = sector.copies * carried.sum(axis=(0, 1))
+        pull = -contact.table.values.transpose(0, 2, 1) @ carried
         scatter(total, absolute, motion, contact.table.functions, pull)
-    lines = [t for t in terms if isinstance(t, LineTerm)]
-    solid = sphere_of(scene)
+    others = [float(push[2])] if contact is not None else []
     for edge, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
         scatter(total, absolute, motion, edge.functions, edge_pull)
-    size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
-    residual = float(np.linalg.norm(total[:-1])) / size
-    if contact is not None:
-        depth, place = 0.0, None
-        if not isinstance(contact, PointSupports):
-            depth, place = _depth(surface, contact, points)
-        weight = body.gradient[2] * inside
-        carried = -sector.copies * float(push[..., 2].sum())
         if scene.line_inside is not None:
-            line = contact_line(surface, scene.line_inside, 2 * points[0], solid)
-            young = -lines[0].strength / tension - 1.0
-            cosine = float(np.cos(line.angle) @ line.arc / line.arc.sum()) - young
-            volume = missing_volume(terms, inside)
-            return Audit(residual, volume, angle=cosine, penetration=depth)
-        missing = abs(carried + weight + lift) / max(abs(weight), abs(carried), TINY)
-        if not stands_free(scene):
-            return Audit(residual, missing_volume(terms, inside), penetration=depth, deepest=place)
-        loose = [axis not in sector.mirrored for axis in "xy"]
-        pushed = sector.copies * push[..., :2].sum(axis=(0, 1)) * loose
-        pushed = pushed - np.array(body.gradient[:2]) * inside * loose
-        sideways = float(np.hypot(*pushed)) / max(abs(weight), TINY)
-        volume = missing_volume(terms, inside)
-        return Audit(residual, volume, missing, sideways, penetration=depth, deepest=place)
+            others.append(-sector.copies * float(edge_pull[..., 2].sum()))
+    found = Audit(
+        relative_residual(total, absolute, tension),
+        missing_volume(terms, loads.inside),
+        line=line_balance(scene, surface, loads, tension, 2 * points[0], solids=others),
+    )
+    if contact is not None:
+        return replace(found, **_lying(scene, surface, body, loads, contact, others, points))
+    lines = [t for t in terms if isinstance(t, LineTerm)]
     if not lines:
-        depth = max(0.0, -lowest) / surface.size
-        return Audit(residual, missing_volume(terms, inside), penetration=depth)
-    cosine, sunk, depth, pull, carried = 0.0, 0.0, 0.0, np.zeros(3), 0.0
-    place, foot = None, None
+        depth = max(0.0, -lowest) / surface.size if laws else None
+        return replace(found, penetration=depth)
+    return replace(found, **_ending(scene, surface, body, loads.inside, lines, points))
+
+
+def _lying(
+    scene: Scene,
+    surface: Surface,
+    body: BodyDensity,
+    loads: Loads,
+    contact: ContactSet,
+    others: list[float],
+    points: tuple[int, int],
+) -> dict[str, Any]:
+    """Defects of a membrane that lies on a solid.
+
+    Parameters
+    ----------
+    others : vertical forces on the membrane of the solid and of lines inside it.
+    """
+    found: dict[str, Any] = {}
+    if not isinstance(contact, PointSupports):
+        found["penetration"], found["deepest"] = _depth(surface, contact, points)
+        found["angle"] = _tilt(surface, contact)
+    if scene.line_inside is not None:
+        term = next(t for t in scene.local_terms() if isinstance(t, LineTerm))
+        line = contact_line(surface, scene.line_inside, 2 * points[0], sphere_of(scene))
+        found["angle"] = cosine_error(line, -term.strength / term.gamma - 1.0)
+    if is_hung(scene):
+        return found
+    size = max(abs(loads.push), abs(others[0]), TINY)
+    found["force"] = abs(loads.push + sum(others)) / size
+    sector = scene.sector
+    loose = [axis not in sector.mirrored for axis in "xy"]
+    if any(loose) and stands_free(scene):
+        push = contact.push(contact.touch(surface.points)).sum(axis=(0, 1))[:2]
+        aside = sector.copies * push - np.array(body.gradient[:2]) * loads.inside
+        found["sideways"] = float(np.hypot(*(aside * loose))) / size
+    return found
+
+
+def _ending(
+    scene: Scene,
+    surface: Surface,
+    body: BodyDensity,
+    inside: float,
+    lines: list[LineTerm],
+    points: tuple[int, int],
+) -> dict[str, Any]:
+    """Defects of a membrane that ends on solids.
+
+    Parameters
+    ----------
+    inside : volume behind the membrane alone.
+    """
+    sector = scene.sector
+    tension = sum(t.gamma for t in scene.local_terms() if isinstance(t, SurfaceTension))
+    found: dict[str, Any] = {}
+    cosine, sunk, pull, carried = 0.0, 0.0, np.zeros(3), 0.0
+    foot, on_spheres = None, False
     for term in lines:
         sphere = term.sphere if isinstance(term, SphereContactLine) else None
         line = contact_line(surface, term.edge, 2 * points[0], sphere)
-        off = float(np.cos(line.angle) @ line.arc / line.arc.sum()) + term.strength / tension
-        cosine = max(cosine, off, key=abs)
+        cosine = max(cosine, cosine_error(line, -term.strength / tension), key=abs)
         gap, nearest = _nearest(surface, points, sector, sphere)
-        place = place or nearest
+        found.setdefault("deepest", nearest)
         if not isinstance(term, SphereContactLine):
-            depth, foot = max(0.0, -gap), line
+            found["penetration"], foot = max(0.0, -gap), line
             continue
+        on_spheres = True
         cap = WettedCap(line, term.sphere, term.toward)
         inside -= cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
         line_pull = _line_pull(cap, tension)
@@ -185,33 +193,59 @@ def audit(
         carried += float(abs(line_pull[2]) + abs(cap.push(body)[2]))
         away = float(np.abs(term.sphere.gap(line.position)).max())
         sunk = max(sunk, away / term.sphere.radius, -gap / term.sphere.radius)
-    missing = missing_volume(terms, inside)
+    found["angle"] = cosine
+    if on_spheres:
+        found["indentation" if foot is not None else "penetration"] = sunk
+    found["volume"] = missing_volume(scene.local_terms(), inside)
+    if not stands_free(scene):
+        return found
+    weight = float(body.gradient[2] * inside)
     if foot is None:
-        open_force = 0.0
-        if stands_free(scene):
-            # of the weight, unless it is nothing beside what balances at the line
-            weight = float(body.gradient[2] * inside)
-            open_force = abs(weight + float(pull[2])) / max(abs(weight), NOTHING * carried, TINY)
-        return Audit(residual, missing, open_force, angle=cosine, penetration=sunk, deepest=place)
-    if any(isinstance(s, (Fixed, Symmetry)) for s in scene.supports):
-        return Audit(residual, missing, angle=cosine, penetration=depth, deepest=place)
-    angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
-    forces = vertical_forces(foot, body, tension, float(angle))
-    weight = body.gradient[2] * inside + pull[2]
-    scale = abs(forces.push) + abs(forces.line) + abs(weight)
-    loose = [bool(pull.any()) and axis not in sector.mirrored for axis in "xy"]
-    unbalanced = (np.array(body.gradient[:2]) * inside + pull[:2]) * loose
-    return Audit(
-        residual,
-        missing,
-        force=abs(forces.push - forces.line - weight) / scale,
-        sideways=float(np.hypot(*unbalanced)) / scale,
-        line=abs(forces.push - forces.measured - weight) / scale,
-        angle=cosine,
-        penetration=depth,
-        indentation=sunk,
-        deepest=place,
-    )
+        # of the weight, unless it is nothing beside what balances at the line
+        missing, size = weight + float(pull[2]), max(abs(weight), NOTHING * carried, TINY)
+    else:
+        angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
+        forces = vertical_forces(foot, body, tension, float(angle))
+        missing = forces.push - forces.line - weight - float(pull[2])
+        size = abs(forces.push) + abs(forces.line) + abs(weight + float(pull[2]))
+    found["force"] = abs(missing) / size
+    loose = [axis not in sector.mirrored for axis in "xy"]
+    if any(loose):
+        aside = np.array(body.gradient[:2]) * inside + pull[:2]
+        found["sideways"] = float(np.hypot(*(aside * loose))) / size
+    return found
+
+
+def _tilt(surface: Surface, contact: ContactSet) -> float | None:
+    """Mean cosine between membrane and solid where they touch, less that of 180 degrees, on the
+    solid where it is worst; None where adhesion stands for an angle, or nothing touches."""
+    touch = contact.touch(surface.points)
+    load = touch.traction * contact.area
+    if contact.adhesion or not load.any():
+        return None
+    cosine = np.einsum("eqi,eqi->eq", surface.on(contact.table).normal, touch.at.normal)
+    _, place = np.unique(touch.at.which[load > 0], return_inverse=True)
+    on_each = [np.bincount(place, v[load > 0]) for v in (load * (cosine + 1.0), load)]
+    return float((on_each[0] / on_each[1]).max())
+
+
+def cosine_error(line: ContactLine, young: float) -> float:
+    """Mean cosine of the angle along a contact line, less Young's."""
+    return float(np.cos(line.angle) @ line.arc / line.arc.sum()) - young
+
+
+def relative_residual(total: Array, absolute: Array, tension: float) -> float | None:
+    """Norm of the weak form over that of its absolute contributions; None where nothing moves.
+
+    Parameters
+    ----------
+    total, absolute : (unknowns + 1,) sums and sums of sizes; the last entry is that of what is
+        held.
+    """
+    if len(total) == 1:
+        return None
+    size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
+    return float(np.linalg.norm(total[:-1])) / size
 
 
 def _line_pull(cap: WettedCap, tension: float) -> Array:
@@ -257,16 +291,24 @@ def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) ->
     )
 
 
-def missing_volume(terms: tuple[Term, ...], inside: float) -> float:
-    """Relative error of a prescribed volume."""
+def missing_volume(terms: tuple[Term, ...], inside: float) -> float | None:
+    """Relative error of a prescribed volume; None where none is."""
     held = next((t for t in terms if isinstance(t, Volume)), None)
-    return abs(inside - held.target) / held.value if held else 0.0
+    return abs(inside - held.target) / held.value if held else None
 
 
 def stands_free(scene: Scene) -> bool:
     """Whether nothing but the solid carries the liquid's weight."""
-    return not any(isinstance(t, Pressure) for t in scene.terms) and not any(
-        isinstance(s, (Fixed, Symmetry)) for s in scene.supports
+    return not any(isinstance(t, Pressure) for t in scene.terms) and not is_hung(scene)
+
+
+def is_hung(scene: Scene) -> bool:
+    """Whether edges are held that no solid carries: an edge that leaves its solid at 180 degrees
+    is fixed where it does so by itself."""
+    tangent = {t.edge for t in scene.terms if isinstance(t, LineTerm) and t.strength >= t.gamma}
+    return any(
+        isinstance(s, Symmetry) or (isinstance(s, Fixed) and s.edge not in tangent)
+        for s in scene.supports
     )
 
 
@@ -294,7 +336,7 @@ def _place(x: Array) -> Place:
     return float(x[0]), float(x[1]), float(x[2])
 
 
-def _density(body: BodyDensity, x: Array) -> Array:
+def density_at(body: BodyDensity, x: Array) -> Array:
     return np.asarray(body.constant + x @ np.array(body.gradient))
 
 

@@ -17,9 +17,10 @@ from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import Centroid, Volume
 from .assembly import Assembly
-from .audit import Audit, audit
+from .audit import audit
 from .contact_record import contact_record
 from .crossing import crossing
+from .evidence import Audit
 from .forces import ParticleForces, particle_forces
 from .inverse_root import SingularMatrix
 from .judge import (
@@ -28,6 +29,7 @@ from .judge import (
     leaves_its_asperity,
     overload,
     reaches_boundary,
+    rests_on_a_point,
     rolling,
     too_soft,
 )
@@ -89,6 +91,9 @@ def conclude(
             objection = contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
+        point = rests_on_a_point(scene)
+        if point is not None:
+            status, kind, message = point
     if status is Status.CONVERGED_STABLE and assembly.contact is None and assembly.trim is None:
         place = crossing(surface)
         if place is not None:

@@ -12,8 +12,8 @@ from ..scenes.scene import Scene
 from ..solids import SphereLattice, Spheres
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .assembly import Assembly
-from .audit import Audit
 from .contact_line import contact_line, vertical_forces
+from .evidence import Audit
 from .footing import footing, touches_base
 from .forces import pull_on_sphere, sphere_lines
 from .measures import own_asperity
@@ -61,7 +61,7 @@ def contact_record(
         "wet_solids": solids,
         "wet_area": wet,
         "wet_fraction": wet / (np.pi * rim**2),
-        "max_penetration": checked.penetration * unit if checked else None,
+        "max_penetration": _depth(checked, unit),
         "deepest_point": _deepest(scene, checked),
         "support_force": support * scale.force,
     }
@@ -79,6 +79,13 @@ def _row(
         "wet_area": float(wet),
         "contact_angle": float(angle),
     }
+
+
+def _depth(checked: Audit | None, unit: float) -> float | None:
+    """Deepest penetration in the user's units; None where it was not looked for."""
+    if checked is None or checked.penetration is None:
+        return None
+    return checked.penetration * unit
 
 
 def _deepest(scene: Scene, checked: Audit | None) -> list[float] | None:
@@ -119,7 +126,7 @@ def _footing(
         "asperities": rows,
         "wet_area": wet,
         "wet_fraction": wet / foot if foot else None,
-        "max_penetration": checked.penetration * on.length * scale.length if checked else None,
+        "max_penetration": _depth(checked, on.length * scale.length),
         "deepest_point": _deepest(scene, checked),
         "support_force": -float(feet.total[2]) * scale.force,
         "touches_base": touches_base(scene, assembly, result.surface, feet),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ..arrays import Array, Mask
@@ -11,44 +9,24 @@ from ..scenes.scene import Scene
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.inside import inside
 from ..surface.surface import Surface
-from ..terms import Centroid, Contact
+from ..terms import (
+    BodyTerm,
+    Centroid,
+    Constraint,
+    Contact,
+    LineTerm,
+    LocalGap,
+    PlaneContactLine,
+    TrimmedContactLine,
+    Volume,
+)
 from .assembly import Assembly
-from .audit import Audit
 from .contact_line import contact_line
+from .evidence import TOLERANCE, Audit
 from .footing import contacts, engulfed, touches_base, unsupported
 from .measures import own_asperity, sphere_of
 from .stability import Stability
 from .status import Status
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """What the audit lets pass; beyond, the status is not a success.
-
-    Attributes
-    ----------
-    residual : weak form on doubled quadrature.
-    volume : relative error of the volume.
-    force : vertical balance of the drop; sideways : horizontal one on asperities, where the
-        directions of the forces are those of a few contact points on each.
-    line : the same from the spline's own contact angle.
-    angle : error of the mean cosine of the contact angle; where a membrane passes through spheres,
-        on each of them.
-    penetration : depth below a plane over the scene's length.
-    indentation : depth in a sphere over its radius; an edge lies on it only in the mean.
-    """
-
-    residual: float = 1e-3
-    volume: float = 1e-4
-    force: float = 1e-3
-    sideways: float = 5e-3
-    line: float = 2e-2
-    angle: float = 2e-2
-    penetration: float = 1e-6
-    indentation: float = 1e-2
-
-
-TOLERANCE = Tolerance()
 
 
 def _unheld(scene: Scene) -> str:
@@ -89,7 +67,7 @@ def judge(
             f"equilibrium, but the smallest eigenvalue {verdict.smallest:.1e} is below its own "
             f"error {verdict.error:.1e}"
         )
-    if checked is None:
+    if checked is None or not checked.gathered:
         return Status.UNVERIFIED, "converged and stable, but not audited"
     return Status.CONVERGED_STABLE, "converged, audited and stable"
 
@@ -104,33 +82,41 @@ def _tolerated_depth(scene: Scene) -> float:
 
 
 def defect(checked: Audit, depth: float) -> tuple[Status, str] | None:
-    """The audit's objection, or None."""
-    limit = TOLERANCE
-    if not checked.penetration <= depth:
-        return Status.PENETRATION, (
-            f"the membrane lies up to {checked.penetration:.1e} radii (plane: lengths) inside the "
-            f"substrate, {depth:.0e} is allowed: take more discretization.elements or raise "
-            "solver.penetration_tolerance"
-        )
-    if not checked.indentation <= limit.indentation:
-        return Status.PENETRATION, (
-            f"the membrane lies up to {checked.indentation:.1e} radii inside a particle, "
-            f"{limit.indentation:.0e} is allowed: take more discretization.elements"
-        )
-    for what, value, most in (
-        ("residual on doubled quadrature", checked.residual, limit.residual),
-        ("volume error", checked.volume, limit.volume),
-        ("vertical force balance", checked.force, limit.force),
-        ("horizontal force balance", checked.sideways, limit.sideways),
-        ("force balance at the contact line", checked.line, limit.line),
-        ("error of the contact angle's cosine", abs(checked.angle), limit.angle),
-    ):
-        if not value <= most:
-            return Status.UNDERRESOLVED, (
-                f"the audit's {what} is {value:.1e} (allowed {most:.0e}): take more "
-                "discretization.elements or a higher degree"
-            )
-    return None
+    """The audit's first objection, or None.
+
+    Parameters
+    ----------
+    depth : in the substrate that is allowed, in the units of the audit's ``penetration``.
+    """
+    found = next((check for check in checked.checks(depth) if check.objects), None)
+    return None if found is None else (found.status, found.message)
+
+
+def rests_on_a_point(scene: Scene) -> tuple[Status, str, str] | None:
+    """How a droplet ends that nothing presses onto solids that it does not wet at all, or None:
+    it has no foot there, whatever the mesh makes of it."""
+    terms = scene.local_terms()
+    solids = [t for t in terms if isinstance(t, (Contact, LineTerm, TrimmedContactLine))]
+    repel = all(
+        not t.adhesion
+        if isinstance(t, Contact)
+        else isinstance(t, PlaneContactLine) and not t.covered and t.strength >= t.gamma
+        for t in solids
+    )
+    pressed = any(
+        isinstance(t, LocalGap) or (isinstance(t, BodyTerm) and any(t.density().gradient))
+        for t in terms
+        if not isinstance(t, Constraint)
+    )
+    alone = any(isinstance(t, Volume) for t in terms) and not scene.particles
+    if not (solids and repel and alone) or pressed:
+        return None
+    return (
+        Status.TOPOLOGY_CHANGE,
+        "touches_in_a_point",
+        "nothing presses the droplet onto its solid, which it does not wet at 180 degrees: it "
+        "touches it in a point at most; give it weight, or a smaller contact angle",
+    )
 
 
 def contact_objection(
@@ -156,18 +142,6 @@ def contact_objection(
             f"the membrane has come down on {beside} asperities beside its finely meshed foot, "
             "which are no supports there: hold the droplet (droplet.hold) or start nearer to it",
         )
-    if assembly.trim is not None and len(feet.which):
-        young = assembly.trim.term.cosine(feet.which)
-        off = np.cos(np.radians(feet.angles)) - young
-        worst = int(np.abs(off).argmax())
-        if abs(off[worst]) > TOLERANCE.angle:
-            return (
-                Status.UNDERRESOLVED,
-                None,
-                f"the mean contact angle on sphere {int(feet.which[worst])} is "
-                f"{feet.angles[worst]:.1f} degrees instead of "
-                f"{np.degrees(np.arccos(young[worst])):g}: take more discretization.elements",
-            )
     inside = engulfed(scene, assembly, surface)
     if inside:
         return (

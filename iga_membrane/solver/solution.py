@@ -15,7 +15,7 @@ from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
 from ..tables import dataframe
 from ..terms import BodyDensity, Gravity, SurfaceTension
-from .audit import Audit
+from .evidence import Audit
 from .forces import ParticleForces
 from .load_stepping import Bracket, LoadStep, Progress
 from .newton import Iteration
@@ -38,7 +38,7 @@ class Solution:
         failed solve both, like the audit, are those of the best state found.
     mode : (count, 3) motion of the control points with that eigenvalue, in world axes, its largest
         one 1, either way; of a saddle or a marginal state, else None.
-    audit : relative defects found by the independent check, or None.
+    audit : relative defects found by the independent check, each None where it was not looked for.
     hold_force : (3,) total force that holds the centroid.
     forces : on each particle.
     contact : wetted area, support force, penetration, by the names of the result file.
@@ -174,9 +174,8 @@ class Solution:
                 f"  {'stability':<24} index {self.index}, smallest eigenvalue "
                 f"{self.lambda_min:.4g} ({self.scene.sector.model} model)"
             )
-        if self.audit:
-            defects = ", ".join(f"{k} {v:.1e}" for k, v in self.audit.defects.items())
-            lines.append(f"  {'audit':<24} {defects}")
+        checks = self.audit.checks() if self.audit else ()
+        lines.append(f"  {'audit':<24} {', '.join(map(str, checks)) or 'n/a'}")
         seconds = ", ".join(f"{k} {v:.3f}" for k, v in self.cpu_seconds.items())
         lines.append(
             f"  {'effort':<24} {self.unknowns} unknowns, {self.newton_iterations} iterations, "

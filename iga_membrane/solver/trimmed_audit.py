@@ -6,6 +6,8 @@ dual tangents and line elements.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import Array
@@ -15,9 +17,22 @@ from ..splines import Table
 from ..surface.motion import Motion
 from ..surface.surface import Surface
 from ..terms import BodyDensity, PlaneContactLine, SurfaceTension
+from ..terms.trimmed import Line
 from .assembly import TINY
-from .audit import AT_A_TIME, Audit, edge_forces, missing_volume, scatter, stands_free
-from .contact_line import contact_line, vertical_forces
+from .audit import (
+    AT_A_TIME,
+    cosine_error,
+    density_at,
+    edge_forces,
+    is_hung,
+    missing_volume,
+    relative_residual,
+    scatter,
+    stands_free,
+)
+from .balance import Loads, line_balance
+from .contact_line import ContactLine, contact_line, vertical_forces
+from .evidence import Audit
 from .trim import EXTRA, Trim
 
 DENSE = 12
@@ -43,12 +58,12 @@ def trimmed_audit(
     dense = surface.space.table(points, trim.elements)
     dense = dense.weighted(outside.share * trim.portion)
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
-    inside = 0.0
+    loads = Loads(sector.copies)
     for table in (dense, outside.area):
         for start in range(0, len(table.functions), AT_A_TIME):
             check_time()
             part = table.part(slice(start, start + AT_A_TIME))
-            inside += _membrane(surface, part, tension, body, motion, total, absolute)
+            _membrane(surface, part, tension, body, motion, total, absolute, loads)
     line = trim.on_line(surface.points, outside)
     arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
     membrane, solid = line.m / line.area[..., None], line.at.normal
@@ -62,15 +77,24 @@ def trimmed_audit(
     pull = tension * trim.ties.forces(surface.points)
     scatter(total, absolute, motion, trim.ties.across[0], pull)
     total[trim.ties.idle] = 0.0
-    size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
-    residual = float(np.linalg.norm(total[:-1])) / size
-    inside += trim.under(surface.points, BodyDensity(1.0), outside)
-    inside *= sector.copies
+    inside = loads.inside + sector.copies * trim.under(surface.points, BodyDensity(1.0), outside)
     off = float(np.abs(line.at.gap).max(initial=0.0)) / trim.length
-    depth = max(_depth(surface, trim, outside.share), off)
-    volume = missing_volume(terms, inside)
+    own, young = (float(v[..., 2].ravel() @ arc.ravel()) for v in _conormals(line))
+    pulls = [sector.copies * tension * pull for pull in (own, young)]
+    foot = next((t for t in terms if isinstance(t, PlaneContactLine)), None)
+    rim = None if foot is None else contact_line(surface, foot.edge, points)
+    found = Audit(
+        relative_residual(total, absolute, tension),
+        missing_volume(terms, inside),
+        line=line_balance(scene, surface, loads, tension, points, inside=pulls[:1]),
+        angle=_worst_angle(line, arc, rim, foot),
+        penetration=max(_depth(surface, trim, outside.share), off),
+    )
+    if is_hung(scene):
+        return found
     if not stands_free(scene):
-        return Audit(residual, volume, penetration=depth)
+        size = max(abs(loads.push), abs(pulls[1]), TINY)
+        return replace(found, force=abs(loads.push + pulls[1]) / size)
     gradient = np.array(body.gradient)
     push = density.sum(axis=(0, 1))
     for axis in range(3):
@@ -80,28 +104,41 @@ def trimmed_audit(
             outside,
         )
     push = sector.copies * push
-    foot = next((t for t in terms if isinstance(t, PlaneContactLine)), None)
-    cosine, below = 0.0, 0.0
-    if foot is not None:
-        rim = contact_line(surface, foot.edge, points)
+    below = 0.0
+    if foot is not None and rim is not None:
         on_plane = vertical_forces(rim, body, tension, foot.contact_angle)
         push[2] -= on_plane.push - on_plane.line
         below = abs(on_plane.push)
-        young = float(np.cos(np.radians(foot.contact_angle)))
-        cosine = float(np.cos(rim.angle) @ rim.arc / rim.arc.sum()) - young
     weight = float(np.linalg.norm(gradient)) * inside
     size = max(weight, below, abs(float(push[2])), TINY)
     missing = push + gradient * inside
     loose = [axis not in sector.mirrored for axis in "xy"]
-    sideways = float(np.hypot(*(missing[:2] * loose))) / size
-    return Audit(
-        residual,
-        volume,
-        abs(float(missing[2])) / size,
-        sideways,
-        angle=cosine,
-        penetration=depth,
-    )
+    sideways = float(np.hypot(*(missing[:2] * loose))) / size if any(loose) else None
+    return replace(found, force=abs(float(missing[2])) / size, sideways=sideways)
+
+
+def _conormals(line: Line) -> tuple[Array, Array]:
+    """(pieces, points, 3) outward unit conormals of the membrane at its lines on solids: by its
+    own tangents, and those of a membrane at Young's angle."""
+    normal, solid = line.m / line.area[..., None], line.at.normal
+    cosine = (normal * solid).sum(axis=-1, keepdims=True)
+    sine = np.sqrt(np.maximum(1.0 - cosine**2, TINY))
+    along = (normal - cosine * solid) / sine
+    young = line.cosine[..., None]
+    return (cosine * normal - solid) / sine, young * along - np.sqrt(1.0 - young**2) * solid
+
+
+def _worst_angle(
+    line: Line, arc: Array, rim: ContactLine | None, foot: PlaneContactLine | None
+) -> float | None:
+    """Mean cosine of the angle less Young's, on the solid where it is worst; None without lines."""
+    cosine = (line.m / line.area[..., None] * line.at.normal).sum(axis=-1)
+    _, place = np.unique(line.at.which[:, 0], return_inverse=True)
+    off = np.bincount(place, ((cosine - line.cosine) * arc).sum(axis=1))
+    errors = [*(off / np.bincount(place, arc.sum(axis=1)))]
+    if rim is not None and foot is not None:
+        errors.append(cosine_error(rim, float(np.cos(np.radians(foot.contact_angle)))))
+    return float(max(errors, key=abs)) if errors else None
 
 
 def _membrane(
@@ -112,20 +149,20 @@ def _membrane(
     motion: Motion,
     total: Array,
     absolute: Array,
-) -> float:
-    """Scatter the weak form of one table; its flux of ``z e_z``."""
+    loads: Loads,
+) -> None:
+    """Scatter the weak form of one table, and add its loads."""
     k = surface.on(table)
     area = k.area_element * table.weights
     dual = tension * area[..., None, None] * k.dual_tangents
-    pressure = body.constant + k.position @ np.array(body.gradient)
-    load = (pressure * area)[..., None] * k.normal
+    load = (density_at(body, k.position) * area)[..., None] * k.normal
     force = (
         table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
         + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
         + table.values.transpose(0, 2, 1) @ load
     )
     scatter(total, absolute, motion, table.functions, force)
-    return float((k.position[..., 2] * k.normal[..., 2] * area).sum())
+    loads.add(body, k.position, k.normal, area, None)
 
 
 def _depth(surface: Surface, trim: Trim, share: Array) -> float:

@@ -73,6 +73,23 @@ class Space:
         """Shape of the tensor-product control net (before a pole joins any of it)."""
         return self.bases[0].count, self.bases[1].count
 
+    @property
+    def open_edges(self) -> tuple[str, ...]:
+        """Edges at which a surface of the space ends: neither folded, nor a ring, nor a pole."""
+        if self.shared is not None:
+            return ()
+        closed = [self.bases[1].periodic, self.bases[0].periodic]
+        return tuple(
+            edge
+            for edge, (along, end) in EDGES.items()
+            if not closed[along] and not (self.pole is not None and (along, end) == (0, 1))
+        )
+
+    @property
+    def is_band(self) -> bool:
+        """Whether a surface of the space is a ring between two edges."""
+        return self.bases[0].periodic and len(self.open_edges) == 2
+
     def table(
         self,
         points: int | tuple[int, int] | None = None,

@@ -7,8 +7,9 @@ from helpers import UNIT_VOLUME, droplet, pinned_cap, solved
 import iga_membrane as iga
 from iga_membrane.reference import drop_on_plane
 from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.audit import Audit, audit
-from iga_membrane.solver.judge import TOLERANCE, defect
+from iga_membrane.solver.audit import audit
+from iga_membrane.solver.evidence import TOLERANCE, Audit
+from iga_membrane.solver.judge import defect
 from iga_membrane.splines import points_of
 
 TENSION = iga.SurfaceTension(1.0)
