@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from .checks import suggestion
-from .errors import SceneError
+from .arguments import checked
+from .checks import refusal, suggestion
 
 UNITS = {
     # length
@@ -25,6 +25,7 @@ UNITS = {
 """Unit to its size in SI; a micro sign is a u, a cube may be written with 3, litres with L."""
 
 
+@checked()
 def si(quantity: str) -> float:
     """A number with a unit as a number in SI.
 
@@ -41,18 +42,15 @@ def si(quantity: str) -> float:
     SceneError
         No text, no number, no unit, or a unit that the table does not have.
     """
-    if not isinstance(quantity, str):
-        raise SceneError(f"{quantity!r}: must be text with a number and a unit, like '1 uL'")
     number, _, unit = quantity.strip().partition(" ")
     if not re.fullmatch(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", number):
-        raise SceneError(f"{quantity!r}: must begin with a number, like '1 uL'")
+        raise refusal("quantity", quantity, "must begin with a number", "write it like '1 uL'")
     if not unit.strip():
-        raise SceneError(f"{quantity!r}: has no unit; known are {', '.join(UNITS)}")
+        raise refusal("quantity", quantity, "has no unit", f"known are {', '.join(UNITS)}")
     known = _plain(unit.strip())
     if known not in UNITS:
-        raise SceneError(
-            f"{quantity!r}: unknown unit{suggestion(known, UNITS)} (known: {', '.join(UNITS)})"
-        )
+        hint = suggestion(known, UNITS).removeprefix("; ")
+        raise refusal("quantity", quantity, "unknown unit", f"{hint} known: {', '.join(UNITS)}")
     return float(number) * UNITS[known]
 
 

@@ -12,7 +12,7 @@ import iga_membrane
 ROOT = Path(iga_membrane.__file__).parent
 FLOORS = {
     "arrays": 0, "errors": 0, "checks": 0, "deadline": 0, "_kernels": 0,
-    "files": 0, "records": 0, "progress": 0, "tables": 0, "units": 0,
+    "arguments": 0, "fields": 0, "files": 0, "records": 0, "progress": 0, "tables": 0, "units": 0,
     "threads": 0,
     "splines": 1, "solids": 1,
     "surface": 2,

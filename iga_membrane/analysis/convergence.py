@@ -6,6 +6,7 @@ import csv
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from math import isnan, log, nan
 from pathlib import Path
@@ -13,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import choice, integer, number
+from ..arguments import checked
+from ..checks import anything, choice, integer, items, number
 from ..errors import OutputError, SceneError
+from ..fields import FIELDS
 from ..scenes.liquid import Discretization, Model, space_name
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
@@ -64,6 +67,7 @@ class Run:
 
 
 @dataclass(frozen=True)
+@checked()
 class Study:
     """Runs of a convergence study, by space and then by mesh.
 
@@ -171,7 +175,7 @@ class Study:
         from matplotlib.figure import Figure
         from matplotlib.ticker import NullFormatter
 
-        name = choice("measure", measure or self.measures[0], self.measures)
+        name = choice("measure", self.measures[0] if measure is None else measure, self.measures)
         choice("against", against, COSTS)
         figure = Figure(figsize=(6.0, 4.5), layout="constrained")
         axes = figure.add_subplot(
@@ -200,6 +204,19 @@ class Study:
             raise OutputError(f"{path}: cannot be written ({error})") from error
 
 
+def _space(field: str, value: Any) -> tuple[Any, int]:
+    """A space and a degree, as a discretization has them."""
+    space, degree = items(field, value, each=anything, count=2)
+    made = Discretization(space, degree)
+    return made.space, degree
+
+
+@checked(
+    spaces=partial(items, each=_space, least=1),
+    elements=partial(items, each=FIELDS["discretization.elements"], least=1),
+    model="discretization.model",
+    repeats=partial(integer, least=1, most=1000),
+)
 def convergence_study(
     scene_of: Callable[[Discretization], Scene],
     *,
@@ -229,11 +246,8 @@ def convergence_study(
         No space, mesh or measure; a measure that the scene does not have; whatever ``scene_of``
         refuses. All meshes are checked before the first solve.
     """
-    integer("repeats", repeats, least=1, most=1000)
-    for name, given in (("spaces", spaces), ("elements", elements), ("exact", exact)):
-        if not len(given):
-            raise SceneError(f"{name} is empty: a study needs at least one")
-    exact = {name: number(f"exact[{name!r}]", value) for name, value in exact.items()}
+    if not exact:
+        raise SceneError("exact is empty: a study needs at least one measure")
     meshes = [
         Discretization(space, degree, count, model)
         for space, degree in spaces

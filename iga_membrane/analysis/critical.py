@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 from scipy.optimize import brentq
 
-from ..checks import number
+from ..arguments import checked
+from ..checks import name_of, number, record
 from ..errors import SceneError
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
@@ -16,6 +18,7 @@ from ..solver.solve import solve
 
 
 @dataclass(frozen=True)
+@checked()
 class Crossing:
     """Where a measure vanishes.
 
@@ -30,6 +33,7 @@ class Crossing:
     solution: Solution = field(repr=False)
 
 
+@checked(tolerance=partial(number, least=1e-14, most=1.0))
 def critical_value(
     scene_at: Callable[[float], Scene],
     measure: Callable[[Solution], float],
@@ -56,12 +60,12 @@ def critical_value(
     SolveError
         If a scene in between has no stable equilibrium.
     """
-    low, high = number("low", low), number("high", high, above=low)
+    number("high", high, above=low)
     solutions: dict[float, Solution] = {}
 
     def at(value: float) -> float:
-        solutions[value] = solve(scene_at(value), options)
-        return float(measure(solutions[value]))
+        solutions[value] = solve(record(f"scene_at({value:g})", scene_at(value), Scene), options)
+        return number(f"{name_of(measure)}(solution)", measure(solutions[value]), smallest=0.0)
 
     ends = at(low), at(high)
     if ends[0] * ends[1] > 0:

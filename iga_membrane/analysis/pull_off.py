@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from time import thread_time
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ..checks import record
+from ..arguments import checked
+from ..checks import items, real, words
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..solids import Sphere
@@ -30,6 +32,13 @@ FARTHEST = 50.0
 
 
 @dataclass(frozen=True, eq=False)
+@checked(
+    force=real,
+    at=real,
+    limit=words("line", "film"),
+    displacements=partial(items, each=real),
+    forces=partial(items, each=real),
+)
 class PullOff:
     """How liquid holds a particle that is pulled out of it, in the user's units.
 
@@ -55,6 +64,7 @@ class PullOff:
     solutions: Sequence[Solution] = field(repr=False)
 
 
+@checked()
 def pull_off(
     scene: Scene,
     options: SolverOptions | None = None,
@@ -76,8 +86,7 @@ def pull_off(
     SolveError
         If the particle has no equilibrium where it stands, does not detach, or a limit is reached.
     """
-    record("scene", scene, Scene)
-    options = options or SolverOptions()
+    options = SolverOptions() if options is None else options
     free = scene.free_particles
     if free is None or len(free.which) != 1:
         raise SceneError(

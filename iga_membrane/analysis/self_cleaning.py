@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import number, record
+from ..checks import NOT_NEGATIVE, real, words
 from ..errors import SceneError
 from ..scenes.scene import Scene
 from ..solids import Plane, SphereLattice, Spheres
@@ -22,6 +23,13 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
+@checked(
+    answer=words("lifted", "dragged", "stays"),
+    normal=real,
+    tangential=real,
+    weight=real,
+    slide=real,
+)
 class Verdict:
     """What happens to a particle, and by which forces.
 
@@ -44,6 +52,7 @@ class Verdict:
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class SelfCleaning:
     """The answer for every particle of a scene.
 
@@ -61,6 +70,7 @@ class SelfCleaning:
         return all(each.answer != "stays" for each in self.verdicts)
 
 
+@checked(friction=NOT_NEGATIVE)
 def self_cleaning(
     scene: Scene, *, friction: float, options: SolverOptions | None = None
 ) -> SelfCleaning:
@@ -81,8 +91,6 @@ def self_cleaning(
     SolveError
         If there is no stable equilibrium.
     """
-    record("scene", scene, Scene)
-    friction = number("friction", friction, least=0.0)
     rough = isinstance(scene.substrate, (SphereLattice, Spheres))
     if scene.kind == "sessile_droplet" and not (rough or isinstance(scene.substrate, Plane)):
         raise SceneError(

@@ -8,14 +8,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import integer, number
+from ..checks import POSITIVE, integer, number
 from ..checks import record as check_record
 from ..errors import OutputError, SceneError
 from ..files import write_whole
@@ -37,6 +39,7 @@ MOST = 1_000_000
 
 
 @dataclass(frozen=True)
+@checked()
 class Sweep:
     """What a sweep found.
 
@@ -116,6 +119,7 @@ class Sweep:
         return [_row(record) for record in self.records]
 
 
+@checked(workers=partial(integer, least=1, most=1024), timeout=POSITIVE)
 def sweep(
     scene_of: Callable[..., Scene],
     over: Mapping[str, Sequence[Any]],
@@ -159,12 +163,7 @@ def sweep(
     OutputError
         If ``out`` cannot be written; checked before any work.
     """
-    options = options or SolverOptions()
-    check_record("options", options, SolverOptions)
-    if workers is not None:
-        integer("workers", workers, least=1, most=1024)
-    if timeout is not None:
-        number("timeout", timeout, above=0.0, unit="seconds")
+    options = SolverOptions() if options is None else options
     points = _grid(over)
     names = tuple(over)
     store = None if out is None else RecordStore(Path(out))

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, number, record
+from ..checks import words
 from ..errors import SceneError
 from ..solids import Sphere
 from ..surface.closed import Stretch
@@ -27,7 +28,6 @@ from .scene import Ramp, Scene
 from .start import gathered
 from .whole_foot import adhesion
 
-SHAPES = ("square", "circle")
 SUNK = 0.01
 """Depth of the start in the sphere over its radius: contact holds it from the first step."""
 SHARP = 175.0
@@ -36,6 +36,14 @@ PER_RADIUS = 16
 """Elements along the sphere's radius, by default."""
 
 
+@checked(
+    size="cell.size",
+    pressure="cell.pressure",
+    shape="cell.shape",
+    penalty="solver.penalty",
+    penetration_tolerance="solver.penetration_tolerance",
+    contact_line=words("auto", "trimmed", "adhesion"),
+)
 def asperity_cell(
     sphere: Sphere,
     *,
@@ -70,11 +78,6 @@ def asperity_cell(
         A value out of its range; a sphere that does not fit into the cell.
     """
     liquid, asked = with_defaults(liquid, discretization)
-    record("sphere", sphere, Sphere)
-    choice("cell.shape", shape, SHAPES)
-    choice("solver.contact_line", contact_line, ("auto", "trimmed", "adhesion"))
-    size = number("cell.size", size, above=0.0)
-    pressure = number("cell.pressure", pressure, above=0.0)
     r, (x, y, z) = sphere.radius, sphere.center
     reach = max(abs(x), abs(y)) if shape == "square" else float(np.hypot(x, y))
     if reach + r >= 0.5 * size:

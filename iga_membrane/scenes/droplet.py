@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, number, record, vector
+from ..checks import either, instance, listed, number, vector, words
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..surface.surface import Surface
@@ -25,6 +26,7 @@ from ..terms import (
     Volume,
 )
 from .approach import from_alone, from_another_angle
+from .asperities import STARTS
 from .beside import check_particles
 from .bridge import axes_between, bridge, moved_apart, room_between
 from .description import described_droplet
@@ -40,9 +42,23 @@ from .scene import FreeEdge, Ramp, Scene
 from .smooth_foot import rim_radius, with_rim
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
-HOLDS = ("none", "x", "xy", "xyz")
+
+def _acceleration(field: str, value: Any) -> tuple[float, float, float]:
+    """A vector, or its size along -z."""
+    if listed(value):
+        return vector(field, value)
+    return 0.0, 0.0, -number("gravity.acceleration", value, least=0.0)
 
 
+@checked(
+    volume="liquid.volume",
+    gravity=_acceleration,
+    hold="droplet.hold",
+    start=either(words(*STARTS), instance(Surface)),
+    penalty="solver.penalty",
+    penetration_tolerance="solver.penetration_tolerance",
+    contact_line=words(*CONTACT_LINES),
+)
 def sessile_droplet(
     substrate: Solid | None,
     *,
@@ -101,12 +117,8 @@ def sessile_droplet(
     if substrate is None:
         # its particle carries it
         substrate, beside = seat_of(grains, hold), ()
-    record("substrate", substrate, Solid)
     check_fixed(substrate)
-    volume = number("liquid.volume", volume, above=0.0)
-    choice("droplet.hold", hold, HOLDS)
-    choice("solver.contact_line", contact_line, CONTACT_LINES)
-    acceleration = _acceleration(gravity)
+    acceleration = np.array(gravity)
     bridges = asked_substrate is None and len(grains) == 2
     if bridges:
         origin, axes = grains[0].center, axes_between(grains)
@@ -254,12 +266,6 @@ def sessile_droplet(
         return again(substrate=replace(substrate, contact_angle=angle))
 
     return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, below))
-
-
-def _acceleration(gravity: Any) -> Array:
-    if isinstance(gravity, (str, bool)) or np.ndim(gravity) == 0:
-        return np.array([0.0, 0.0, -number("gravity.acceleration", gravity, least=0.0)])
-    return np.array(vector("gravity", gravity))
 
 
 def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import number
 from ..errors import SceneError
 from ..surface.ring import axisymmetric, ring_space
 from ..surface.supports import Fixed, Sector
@@ -20,6 +20,7 @@ SLENDER = 0.4
 """Half height over radius at which every film starts its ramp: well below any limit."""
 
 
+@checked("rings")
 def film_between_rings(
     *,
     radius: float = 1.0,
@@ -47,8 +48,6 @@ def film_between_rings(
     """
     liquid, asked = with_defaults(liquid, discretization)
     mesh = asked.mesh()
-    radius = number("rings.radius", radius, above=0.0)
-    half_height = number("rings.half_height", half_height, above=0.0)
     if volume is not None and pressure is not None:
         raise SceneError("rings.volume, rings.pressure: both are prescribed; give one of them")
     # a catenoid collapses round its axis first; a bridge may give way sideways
@@ -57,12 +56,11 @@ def film_between_rings(
     terms: list[Term] = [SurfaceTension(liquid.surface_tension)]
     bulge = 0.0
     if volume is not None:
-        volume = number("rings.volume", volume, above=0.0)
         cylinder = 2.0 * np.pi * radius**2 * half_height
         terms.append(Volume(volume, ends=cylinder))
         bulge = _bulge(volume / cylinder)
     elif pressure is not None:
-        terms.append(Pressure(number("rings.pressure", pressure)))
+        terms.append(Pressure(pressure))
 
     def profile(t: Array) -> tuple[Array, Array, Array]:
         s = 2.0 * t - 1.0

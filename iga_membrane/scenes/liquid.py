@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
-from ..checks import choice, integer, number, record
+from ..arguments import checked
+from ..checks import either, function
 from ..errors import SceneError
+from ..fields import FIELDS
 from ..splines import BasisOf
 
 Model = Literal["full", "half", "quarter", "eighth"]
@@ -14,6 +17,7 @@ MODELS: tuple[Model, ...] = ("full", "half", "quarter", "eighth")
 
 
 @dataclass(frozen=True)
+@checked("liquid")
 class Liquid:
     """A liquid of constant surface tension.
 
@@ -25,11 +29,6 @@ class Liquid:
 
     surface_tension: float = 1.0
     density: float = 1.0
-
-    def __post_init__(self) -> None:
-        tension = number("liquid.surface_tension", self.surface_tension, above=0.0)
-        object.__setattr__(self, "surface_tension", tension)
-        object.__setattr__(self, "density", number("liquid.density", self.density, least=0.0))
 
     @classmethod
     def water(cls) -> Liquid:
@@ -53,6 +52,10 @@ class Liquid:
 
 
 @dataclass(frozen=True)
+@checked(
+    "discretization",
+    space=either(FIELDS["discretization.space"], partial(function, arguments=2)),
+)
 class Discretization:
     """Space and mesh of one patch; what is None is chosen by the scene.
 
@@ -71,23 +74,18 @@ class Discretization:
     model: Model | None = None
 
     def __post_init__(self) -> None:
-        if not callable(self.space):
-            choice("discretization.space", self.space, ("bspline", "nurbs", "lagrange"))
-        if self.space in ("bspline", "nurbs") and isinstance(self.degree, int) and self.degree < 2:
+        if self.space in ("bspline", "nurbs") and self.degree == 1:
             raise SceneError(
                 f"discretization.degree = {self.degree}: degree {self.degree} is not C1, C1 needed "
                 f'for curvature and contact lines: degree >= 2 in space "{self.space}"'
             )
-        if self.degree is not None:
-            integer("discretization.degree", self.degree, least=1, most=4)
-        if self.elements is not None:
-            integer("discretization.elements", self.elements, least=3, most=4096)
-        if self.model is not None:
-            choice("discretization.model", self.model, MODELS)
 
     def mesh(self, *, degree: int = 4, elements: int = 20) -> Mesh:
         """The choices, with a scene's own where there are none."""
-        return Mesh(self.space, self.degree or degree, self.elements or elements, self.model)
+        degree = degree if self.degree is None else self.degree
+        return Mesh(
+            self.space, degree, elements if self.elements is None else self.elements, self.model
+        )
 
 
 def space_name(space: str | BasisOf) -> str:
@@ -98,17 +96,11 @@ def space_name(space: str | BasisOf) -> str:
 def with_defaults(
     liquid: Liquid | None, discretization: Discretization | None
 ) -> tuple[Liquid, Discretization]:
-    """What a scene was given, or the defaults.
-
-    Raises
-    ------
-    SceneError
-        If they are not what they should be.
-    """
-    given = liquid or Liquid(), discretization or Discretization()
-    record("liquid", given[0], Liquid)
-    record("discretization", given[1], Discretization)
-    return given
+    """What a scene was given, or the defaults."""
+    return (
+        Liquid() if liquid is None else liquid,
+        Discretization() if discretization is None else discretization,
+    )
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..checks import record
 from ..errors import SceneError
@@ -111,6 +112,7 @@ class FreeParticles:
 
 
 @dataclass(frozen=True)
+@checked(motion="solver.motion", liquid_density="liquid.density")
 class Scene:
     """Everything a solve needs to know.
 

@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..checks import choice, path_values, record
+from ..arguments import checked
+from ..checks import choice, path_values
 from ..errors import SceneError
 from .liquid import MODELS
 from .scene import Ramp, Scene
-from .scene_keys import KEYS, check_numbers, later, table_of
+from .scene_keys import KEYS, check_values, later, table_of
 from .scene_readers import FOREIGN, READERS, solver_limits
 
 SCHEMA = 1
@@ -39,6 +40,7 @@ class SceneFile:
     solver: dict[str, Any]
 
 
+@checked()
 def load_scene(path: str | Path) -> SceneFile:
     """Read a scene file (.toml or .json).
 
@@ -54,6 +56,7 @@ def load_scene(path: str | Path) -> SceneFile:
     return read_scene(read_tables(path))
 
 
+@checked()
 def read_tables(path: str | Path) -> Any:
     """The tables of a TOML or JSON file, not checked yet.
 
@@ -62,7 +65,6 @@ def read_tables(path: str | Path) -> Any:
     SceneError
         Not readable, too large, or not TOML/JSON.
     """
-    record("path", path, str, Path)
     path = Path(path)
     try:
         size = path.stat().st_size
@@ -113,9 +115,10 @@ def read_scene(data: Any) -> SceneFile:
         if not isinstance(entries, list):
             raise SceneError(f"{name}: must be a list of tables, [[{name}]]")
         for i, entry in enumerate(entries):
-            check_numbers(f"{name}[{i}]", table_of(name, entry, f"{name}[{i}]"))
+            label = f"{name}[{i}]"
+            check_values(table_of(name, entry, label), name, label)
     for name, table in tables.items():
-        check_numbers(name, table)
+        check_values(table, name)
     if kind not in READERS:
         raise later(f'scene = "{kind}"')
     for name in FOREIGN[kind]:

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from types import NoneType
 from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, flag, number, record
+from ..checks import words
 from ..errors import SceneError
 from ..solids import Sphere
 from ..splines import Grading, Space, points_of
@@ -46,12 +46,16 @@ from .sheet_through import sheet_through
 from .start import check_net, funnel
 from .whole_membrane import WholeMembrane, sheet_with_wetted_part
 
-BOUNDARIES = ("square", "circle")
 CONTACT_LINES = ("auto", "conforming", "trimmed")
 THROUGH = {"degree": 3, "elements": 40}
 """Mesh of a sheet that passes through its particle."""
 
 
+@checked(
+    "sheet",
+    gravity="gravity.acceleration",
+    contact_line=words(*CONTACT_LINES),
+)
 def liquid_sheet(
     particle: Sphere | None = None,
     *,
@@ -93,14 +97,8 @@ def liquid_sheet(
         the rim, a model with a mirror plane that the particle's place does not have.
     """
     liquid, asked = with_defaults(liquid, discretization)
-    record("particle", particle, Sphere, NoneType)
-    flag("sheet.liquid_weight", liquid_weight)
-    choice("sheet.boundary", boundary, BOUNDARIES)
-    choice("solver.contact_line", contact_line, CONTACT_LINES)
     through = contact_line == "trimmed"
     mesh = asked.mesh(**(THROUGH if through else {"elements": 8 if boundary == "square" else 20}))
-    size = number("sheet.size", size, above=0.0)
-    gravity = number("gravity.acceleration", gravity, least=0.0)
     if pressure is not None and volume is not None:
         raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
     sector = _sector(mesh, particle)
@@ -120,7 +118,7 @@ def liquid_sheet(
                 "particle, with pressure, volume or the liquid's weight, or from a start"
             )
         _check_place(particle, size, boundary)
-        mesh = (discretization or Discretization()).mesh(degree=3, elements=18)
+        mesh = asked.mesh(degree=3, elements=18)
         return sheet_with_wetted_part(
             particle, size, boundary, liquid, gravity, mesh, sector, membrane, described
         )
@@ -144,9 +142,9 @@ def liquid_sheet(
     if volume is not None:
         # a sheet's volume is signed, so the constraint's positive scale is the rim's own
         whole = np.pi * (0.5 * size) ** 3
-        terms.append(Volume(whole, ends=whole - number("sheet.volume", volume)))
+        terms.append(Volume(whole, ends=whole - volume))
     else:
-        pressure = number("sheet.pressure", 0.0 if pressure is None else pressure)
+        pressure = 0.0 if pressure is None else pressure
         if pressure:
             terms.append(Pressure(pressure))
     if liquid_weight and gravity * liquid.density:

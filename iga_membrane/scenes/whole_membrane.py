@@ -13,12 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import integer, number
+from ..checks import integer
 from ..errors import SceneError
 from ..solids import Plane, Sphere
 from ..splines import Grading, Space, points_of
@@ -48,6 +50,7 @@ WET = 1.0 / 3.0
 
 
 @dataclass(frozen=True)
+@checked("solver", load_steps=partial(integer, least=1, most=100_000))
 class WholeMembrane:
     """Choices of the paper's formulation.
 
@@ -67,11 +70,6 @@ class WholeMembrane:
     penalty: float = 1e4
     load_steps: int = 20
     penetration_tolerance: float = 1e-2
-
-    def __post_init__(self) -> None:
-        for name in ("stabilization", "penalty", "penetration_tolerance"):
-            number(f"solver.{name}", getattr(self, name), above=0.0)
-        integer("load_steps", self.load_steps, least=1, most=100_000)
 
 
 def sheet_with_wetted_part(

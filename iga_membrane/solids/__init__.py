@@ -3,6 +3,6 @@
 from .lattice import SphereLattice, Spheres
 from .nearest import Nearest, Solid
 from .plane import Plane
-from .sphere import MOTIONS, Sphere
+from .sphere import Sphere
 
-__all__ = ["MOTIONS", "Nearest", "Plane", "Solid", "Sphere", "SphereLattice", "Spheres"]
+__all__ = ["Nearest", "Plane", "Solid", "Sphere", "SphereLattice", "Spheres"]

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import choice, contact_angle, number, vector
+from ..checks import POSITIVE, Rule, array, contact_angle, items, number, refusal, vector
 from ..errors import SceneError
 from .nearest import Nearest, closer, nearest_of_balls
 
-ARRANGEMENTS = ("square", "hexagonal")
-
 
 @dataclass(frozen=True)
+@checked("substrate", contact_angle=contact_angle, base=partial(number, most=0.0))
 class SphereLattice:
     """Equal spheres on an unbounded lattice, their tops in z = 0.
 
@@ -39,18 +39,7 @@ class SphereLattice:
     base: float | None = None
 
     def __post_init__(self) -> None:
-        angle = contact_angle("substrate.contact_angle", self.contact_angle)
-        object.__setattr__(self, "contact_angle", angle)
-        radius = number("substrate.radius", self.radius, above=0.0)
-        object.__setattr__(self, "radius", radius)
-        spacing = number("substrate.spacing", self.spacing, least=2.0 * radius)
-        object.__setattr__(self, "spacing", spacing)
-        choice("substrate.arrangement", self.arrangement, ARRANGEMENTS)
-        x, y, _ = vector("substrate.offset", [*self.offset, 0.0])
-        object.__setattr__(self, "offset", (x, y))
-        if self.base is not None:
-            base = number("substrate.base", self.base, most=0.0)
-            object.__setattr__(self, "base", base)
+        number("substrate.spacing", self.spacing, least=2.0 * self.radius)
 
     @property
     def scale(self) -> float:
@@ -126,7 +115,38 @@ HALF = 1 << 20
 """Lattice sites are numbered from minus to plus this."""
 
 
+def _each(field: str, value: Any, *, rule: Rule) -> Array:
+    """() or (n,) numbers that keep a rule."""
+    if not np.ndim(value):
+        return np.asarray(rule(field, value))
+    numbers = array(field, value, shape=(None,))
+    kinds, first = np.unique(numbers, return_index=True)
+    for k in np.argsort(first):
+        rule(f"{field}[{first[k]}]", float(kinds[k]))
+    return numbers
+
+
+def _places(field: str, value: Any) -> Array:
+    """(n, 3) centres, as a copy."""
+    if isinstance(value, np.ndarray):
+        places = array(field, value, shape=(None, 3))
+    else:
+        places = np.array(items(field, value, each=vector)).reshape(-1, 3)
+    if not 1 <= len(places) <= MOST:
+        raise refusal(
+            field, value, f"at least one sphere is needed, at most {MOST}", "an unbounded lattice "
+            'is substrate.kind = "sphere_lattice"',
+        )  # fmt: skip
+    return np.array(places)
+
+
 @dataclass(frozen=True, eq=False)
+@checked(
+    "substrate",
+    contact_angle=partial(_each, rule=contact_angle),
+    centers=_places,
+    radii=partial(_each, rule=POSITIVE),
+)
 class Spheres:
     """Any spheres.
 
@@ -144,26 +164,15 @@ class Spheres:
     base: float | None = None
 
     def __post_init__(self) -> None:
-        places = _places(self.centers)
-        if not len(places):
-            raise SceneError("substrate.centers = []: at least one sphere is needed")
-        if len(places) > MOST:
-            raise SceneError(
-                f"substrate.centers: {len(places)} spheres given, at most {MOST}; an unbounded "
-                'lattice is substrate.kind = "sphere_lattice"'
-            )
-        count = len(places)
-        sizes = _each("substrate.radii", self.radii, count)
-        bad = np.flatnonzero(~(np.isfinite(sizes) & (sizes > 0)))
-        for i in bad[:1]:
-            number(f"substrate.radii[{i}]", float(sizes[i]), above=0.0)
-        angles = _each("substrate.contact_angle", self.contact_angle, count)
-        for angle in set(angles.tolist()):
-            contact_angle("substrate.contact_angle", angle)
-        if self.base is not None:
-            object.__setattr__(self, "base", number("substrate.base", self.base))
-        for name, value in (("centers", places), ("radii", sizes), ("contact_angle", angles)):
-            object.__setattr__(self, name, value)
+        count = len(self.centers)
+        for name in ("radii", "contact_angle"):
+            given = np.asarray(getattr(self, name))
+            if given.ndim and given.shape != (count,):
+                raise SceneError(
+                    f"substrate.{name}: an array of shape {given.shape} given for {count} spheres; "
+                    "one number or one per sphere is needed"
+                )
+            object.__setattr__(self, name, np.array(np.broadcast_to(given, count)))
 
     @property
     def scale(self) -> float:
@@ -248,30 +257,3 @@ def plane_below(points: Array, height: float) -> Nearest:
     up = np.broadcast_to([0.0, 0.0, 1.0], points.shape)
     shape = points.shape[:-1]
     return Nearest(points[..., 2] - height, up, np.zeros(shape), np.full(shape, -1))
-
-
-def _each(field: str, value: float | Sequence[float] | Array, count: int) -> Array:
-    if np.ndim(value) == 0:
-        return np.full(count, number(field, value))
-    try:
-        values = np.asarray(value, float)
-    except (TypeError, ValueError):
-        values = np.array([number(f"{field}[{i}]", v) for i, v in enumerate(value)])  # type: ignore[arg-type]
-    if values.shape != (count,):
-        raise SceneError(
-            f"{field}: an array of shape {values.shape} given for {count} spheres; one number "
-            "or one per sphere is needed"
-        )
-    return values
-
-
-def _places(centers: Any) -> Array:
-    """(n, 3) finite numbers."""
-    if not isinstance(centers, Iterable):
-        raise SceneError(f"substrate.centers = {centers!r}: a list of [x, y, z] is needed")
-    if isinstance(centers, np.ndarray) and centers.dtype == float and centers.shape[1:] == (3,):
-        places = np.array(centers)
-        if np.isfinite(places).all():
-            return places
-    rows = [vector(f"substrate.centers[{i}]", c) for i, c in enumerate(centers)]
-    return np.array(rows).reshape(-1, 3)

@@ -8,10 +8,12 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array, Index, Mask
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Nearest:
     """Nearest surface of a solid at points (...).
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import contact_angle, vector
-from ..errors import SceneError
+from ..checks import contact_angle, direction
 from .nearest import Nearest
 
 
 @dataclass(frozen=True)
+@checked("substrate", contact_angle=contact_angle, normal=direction)
 class Plane:
     """Half space below a plane.
 
@@ -27,15 +28,6 @@ class Plane:
     contact_angle: float
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     normal: tuple[float, float, float] = (0.0, 0.0, 1.0)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(
-            self, "contact_angle", contact_angle("substrate.contact_angle", self.contact_angle)
-        )
-        object.__setattr__(self, "point", vector("substrate.point", self.point))
-        object.__setattr__(self, "normal", vector("substrate.normal", self.normal))
-        if not np.abs(self.normal).max() > 0:
-            raise SceneError(f"substrate.normal = {self.normal}: must not be zero")
 
     def unit_normal(self) -> Array:
         """(3,) unit normal."""

@@ -7,15 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import choice, contact_angle, number, vector
+from ..checks import contact_angle
 from ..errors import GeometryError
 from .nearest import Nearest, nearest_of_balls
 
-MOTIONS = ("fixed", "vertical", "normal", "resting")
-
 
 @dataclass(frozen=True)
+@checked(
+    "substrate", contact_angle=contact_angle, density="particle.density", motion="particle.motion"
+)
 class Sphere:
     """Solid ball.
 
@@ -34,15 +36,6 @@ class Sphere:
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
     density: float = 0.0
     motion: str = "fixed"
-
-    def __post_init__(self) -> None:
-        angle = contact_angle("substrate.contact_angle", self.contact_angle)
-        object.__setattr__(self, "contact_angle", angle)
-        radius = number("substrate.radius", self.radius, above=0.0)
-        object.__setattr__(self, "radius", radius)
-        object.__setattr__(self, "center", vector("substrate.center", self.center))
-        number("particle.density", self.density, least=0.0)
-        choice("particle.motion", self.motion, MOTIONS)
 
     def offset(self, points: ArrayLike) -> tuple[Array, Array]:
         """Vectors from the centre to points (..., 3) and their lengths."""

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import integer
 from ..solids import Sphere
 from ..splines.quadrature import gauss
-from ..splines.space import EDGES
+from ..splines.space import EDGES, line
 from ..surface.surface import Surface
 from ..terms import BodyDensity
 from .trim import Trim
@@ -34,6 +37,7 @@ class ContactLine:
     arc: Array
 
 
+@checked(edge=line, points=partial(integer, least=1, most=64))
 def contact_line(
     surface: Surface,
     edge: str = "xi2=0",
@@ -53,7 +57,7 @@ def contact_line(
     along, place = space.edge_place(edge)
     end = EDGES[edge][1] if edge in EDGES else 0
     basis = space.bases[along]
-    u, w = gauss(points or space.degree + 1)
+    u, w = gauss(space.degree + 1 if points is None else points)
     t = (basis.breaks[:-1, None] + basis.sizes[:, None] * u).ravel()
     xi = np.empty((len(t), 2))
     xi[:, along] = t

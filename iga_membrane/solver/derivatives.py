@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import integer, real
 from ..scenes.scene import Scene
 from ..terms import SurfaceTension, Term
 from .assembly import TINY, Assembly
@@ -25,6 +28,7 @@ DIRECTIONS = 3
 
 
 @dataclass(frozen=True)
+@checked(gradient=real, hessian=real)
 class Derivatives:
     """Relative errors of a term's derivatives.
 
@@ -42,6 +46,7 @@ class Derivatives:
         return max(self.gradient, self.hessian) < 1e-5
 
 
+@checked(seed=partial(integer, least=0))
 def check_derivatives(scene: Scene, seed: int = 0) -> dict[str, Derivatives]:
     """Compare the derivatives of a scene's energy and constraints with differences, term by term.
 

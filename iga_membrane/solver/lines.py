@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Index
 from ..scenes.scene import Scene
 from ..surface.sector import mirrors
@@ -33,6 +34,7 @@ class LineOnSolid:
     line: ContactLine
 
 
+@checked()
 def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     """Contact lines of a solution.
 

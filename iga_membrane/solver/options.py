@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
-from ..checks import flag, integer, number
-from ..errors import SceneError
+from ..arguments import checked
+from ..checks import integer, number, state_file
 from ..files import check_folder
-
-ON_FAIL = ("raise", "return")
-"""What to do with a solution that is no success."""
 
 
 @dataclass(frozen=True)
+@checked(
+    "solver",
+    tolerance=partial(number, least=1e-14, most=1e-2),
+    max_iterations=partial(integer, least=1, most=100_000),
+    min_load_step=partial(number, least=1e-9, most=1.0),
+    quadrature=partial(integer, least=1, most=64),
+    start=state_file,
+    checkpoint=state_file,
+)
 class SolverOptions:
     """How to solve; every tolerance is relative to the scene's own length and tension.
 
@@ -45,21 +52,6 @@ class SolverOptions:
     follow_instability: bool = False
     start: str | Path | None = None
     checkpoint: str | Path | None = None
-
-    def __post_init__(self) -> None:
-        number("solver.tolerance", self.tolerance, least=1e-14, most=1e-2)
-        integer("solver.max_iterations", self.max_iterations, least=1, most=100_000)
-        number("solver.min_load_step", self.min_load_step, least=1e-9, most=1.0)
-        if self.quadrature is not None:
-            integer("solver.quadrature", self.quadrature, least=1, most=64)
-        number("solver.max_cpu_s", self.max_cpu_s, above=0.0)
-        number("solver.max_memory_gb", self.max_memory_gb, above=0.0)
-        flag("solver.audit", self.audit)
-        flag("solver.follow_instability", self.follow_instability)
-        for name in ("start", "checkpoint"):
-            path = getattr(self, name)
-            if path is not None and Path(path).suffix != ".npz":
-                raise SceneError(f"solver.{name} = {str(path)!r}: must be a state file, .npz")
 
     def check_folder(self) -> None:
         """Make the folder of the checkpoint and prove that it can be written.

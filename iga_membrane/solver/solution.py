@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import items, mapping, real
 from ..scenes.scene import Scene
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
@@ -23,6 +26,14 @@ from .status import Status
 
 
 @dataclass(frozen=True, eq=False)
+@checked(
+    measures=mapping,
+    multipliers=mapping,
+    lambda_min=real,
+    hold_force=partial(items, each=real, count=3),
+    cpu_seconds=mapping,
+    volume_error=real,
+)
 class Solution:
     """What a solve found.
 

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..checks import choice, record
+from ..arguments import checked
 from ..errors import SceneError, SolveError
 from ..scenes.scene import Scene
 from ..threads import one_thread
@@ -20,7 +20,7 @@ from .free_edge import tangent_edge
 from .load_stepping import LoadPath, LoadStep, load_stepping
 from .moving import settled
 from .newton import NewtonOptions, NewtonResult, newton
-from .options import ON_FAIL, SolverOptions
+from .options import SolverOptions
 from .predictor import first, settings_of
 from .quasi_static import quasi_static
 from .saddle import check_followed, followed
@@ -32,6 +32,7 @@ from .trace import walk
 log = logging.getLogger("iga_membrane")
 
 
+@checked()
 @one_thread
 def solve(
     scene: Scene,
@@ -62,10 +63,7 @@ def solve(
     SolveError
         If the status is not ``CONVERGED_STABLE`` and ``on_fail`` is "raise".
     """
-    record("scene", scene, Scene)
-    options = options or SolverOptions()
-    record("options", options, SolverOptions)
-    choice("on_fail", on_fail, ON_FAIL)
+    options = SolverOptions() if options is None else options
     options.check_folder()
     if options.follow_instability:
         check_followed(scene)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..checks import record
+from ..arguments import checked
 from ..errors import OutputError, SceneError, StateError
 from ..files import previous, read_arrays, write_arrays
 from ..records import decode, digest, encode
@@ -22,6 +22,7 @@ from .solution import Solution
 log = logging.getLogger("iga_membrane")
 
 
+@checked()
 def load(path: str | Path, *, also: Sequence[type] = ()) -> Solution:
     """Read back a solution, bit by bit as it was saved.
 
@@ -38,7 +39,6 @@ def load(path: str | Path, *, also: Sequence[type] = ()) -> Solution:
     StateError
         Corrupt, cut off, foreign or newer; or a checkpoint that holds no solution yet.
     """
-    record("path", path, str, Path)
     found = _read(Path(path), also)
     if isinstance(found, Solution):
         return found

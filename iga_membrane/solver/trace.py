@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from time import thread_time
 from typing import Any, Literal
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, path_values
+from ..checks import path_values
 from ..errors import SceneError, SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from ..tables import column, dataframe, dataset
@@ -18,7 +19,7 @@ from .assembly import Assembly
 from .conclude import Outcome, conclude
 from .load_stepping import Bracket, LoadStep, load_stepping
 from .newton import NewtonResult
-from .options import ON_FAIL, SolverOptions
+from .options import SolverOptions
 from .predictor import first, settings_of
 from .solution import Solution
 from .state import journal_of
@@ -30,6 +31,7 @@ own mesh are the same equilibrium."""
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Path:
     """Equilibria along a parameter.
 
@@ -85,6 +87,7 @@ class Path:
         return [{self.parameter: value, **solution.row()} for value, solution in pairs]
 
 
+@checked(values=path_values)
 @one_thread
 def trace(
     scene_at: Callable[[float], Scene],
@@ -117,14 +120,13 @@ def trace(
         If the folder of ``options.checkpoint`` cannot be written; before any work.
     SolveError
     """
-    choice("on_fail", on_fail, ON_FAIL)
-    checked = path_values("values", values)
-    ramp = Ramp(parameter, checked, scene_at, asked=True)
-    options = options or SolverOptions()
+    asked = tuple(values)
+    ramp = Ramp(parameter, asked, scene_at, asked=True)
+    options = SolverOptions() if options is None else options
     options.check_folder()
     found = walk(ramp, options, report)
     reached = [s for s in found if s.success]
-    path = Path(parameter, checked[: len(reached)], reached, found[-1])
+    path = Path(parameter, asked[: len(reached)], reached, found[-1])
     if not path.success and on_fail == "raise":
         raise SolveError(f"{path.end.status.name}: {path.end.message}", path.end)
     return path

@@ -1,6 +1,8 @@
 """Spline and Lagrange spaces: functions of two parameters, no geometry."""
 
 from .basis import (
+    KIND,
+    POLYNOMIALS,
     Basis,
     BasisOf,
     bspline_basis,
@@ -13,13 +15,27 @@ from .basis import (
 from .cut import Cut, cut
 from .faces import Faces, faces_between, jumps
 from .grading import Grading
-from .knots import check_knots, greville, insertion_matrix, open_knots
+from .knots import (
+    DEGREE,
+    ELEMENTS,
+    PATCH,
+    check_knots,
+    greville,
+    insertion_matrix,
+    open_knots,
+)
 from .pillow import pillow_space
 from .polar import close_pole, net_of, points_of, ring_angles
-from .space import Space, tensor_space
+from .space import EDGE, Space, line, tensor_space
 from .table import EdgeTable, LineTable, Table
 
 __all__ = [
+    "DEGREE",
+    "EDGE",
+    "ELEMENTS",
+    "KIND",
+    "PATCH",
+    "POLYNOMIALS",
     "Basis",
     "BasisOf",
     "Cut",
@@ -38,6 +54,7 @@ __all__ = [
     "insertion_matrix",
     "jumps",
     "lagrange_basis",
+    "line",
     "line_basis",
     "net_of",
     "open_knots",

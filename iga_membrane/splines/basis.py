@@ -9,18 +9,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array, Index
+from ..checks import POSITIVE, Rule, either, function, integer, items, refusal, words
 from ..errors import SceneError
 from .bernstein import bernstein, extraction
-from .knots import check_knots, greville, open_knots
+from .knots import DEGREE, ELEMENTS, check_knots, greville, increasing, open_knots
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Basis:
     """Piecewise polynomial basis.
 
@@ -123,6 +126,7 @@ class Basis:
         return 0.5 * (self.matrix(inside - step, 1) + self.matrix(inside + step, 1))
 
 
+@checked(degree=partial(integer, least=0, most=32), continuity=partial(integer, least=-1))
 def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basis:
     """B-splines on a clamped knot vector.
 
@@ -172,6 +176,7 @@ def uniform_basis(start: float, end: float, elements: int, degree: int) -> Basis
     )
 
 
+@checked(elements=ELEMENTS, degree=DEGREE, length=POSITIVE)
 def periodic_basis(
     elements: int, degree: int, length: float = 1.0, joints: Sequence[int] = ()
 ) -> Basis:
@@ -193,6 +198,7 @@ def periodic_basis(
         raise SceneError(f"degree {degree} is not C1: C1 needed, so degree >= 2 (got {degree})")
     if elements <= degree:
         raise SceneError(f"elements = {elements}: a ring of degree {degree} needs > {degree}")
+    _joints(joints, 0, elements)
     size = length / elements
     multiplicity = np.ones(elements, int)
     multiplicity[list(joints)] = degree
@@ -216,6 +222,7 @@ def periodic_basis(
     )
 
 
+@checked(breaks=increasing, degree=partial(integer, least=1, most=4))
 def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) -> Basis:
     """Lagrange polynomials on equidistant nodes of each element: C0, degree 1 to 4.
 
@@ -248,8 +255,11 @@ def lagrange_basis(breaks: ArrayLike, degree: int, *, periodic: bool = False) ->
 
 BasisOf = Callable[[int, int], Basis]
 """A spline space of one's own: number of elements and degree to a basis on [0, 1]."""
+POLYNOMIALS = ("bspline", "lagrange")
+KIND: Rule = either(words(*POLYNOMIALS), partial(function, arguments=2))
 
 
+@checked(kind=KIND, elements=ELEMENTS, degree=DEGREE)
 def line_basis(
     kind: str | BasisOf, elements: int, degree: int, joints: Sequence[int] = ()
 ) -> Basis:
@@ -272,11 +282,19 @@ def line_basis(
     breaks = np.linspace(0.0, 1.0, elements + 1)
     if kind == "lagrange":
         return lagrange_basis(breaks, degree)
-    if not joints:
+    _joints(joints, 1, elements)
+    if not len(joints):
         return bspline_basis(open_knots(breaks, degree), degree)
     kinks = tuple(float(breaks[j]) for j in joints)
     knots = np.sort(np.concatenate([open_knots(breaks, degree), np.repeat(kinks, degree - 1)]))
     return replace(bspline_basis(knots, degree, continuity=0), continuity=degree - 1, joints=kinks)
+
+
+def _joints(joints: Sequence[int], least: int, elements: int) -> None:
+    """Refuse joints that are no elements, or given twice."""
+    rule = partial(integer, least=least, most=elements - 1)
+    if len(set(items("joints", joints, each=rule))) < len(joints):
+        raise refusal("joints", list(joints), "each element can have one joint", "give it once")
 
 
 def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int]) -> Basis:
@@ -304,6 +322,7 @@ def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int])
     return basis
 
 
+@checked(kind=words(*POLYNOMIALS), elements=ELEMENTS, degree=DEGREE, length=POSITIVE)
 def ring_basis(
     kind: str, elements: int, degree: int, length: float, joints: Sequence[int] = ()
 ) -> Basis:

@@ -8,10 +8,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import POSITIVE
 
 
 @dataclass(frozen=True)
+@checked(first=POSITIVE)
 class Grading:
     """Smooth map ``s(t) = (exp(a t) - 1) / (exp(a) - 1)`` of [0, 1] to itself.
 

@@ -2,13 +2,39 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import array, integer, refusal
 from ..errors import SceneError
 
+DEGREE = partial(integer, least=1, most=32)
+"""Rule of a degree: beyond, Bernstein polynomials lose more digits than a degree gains."""
+ELEMENTS = partial(integer, least=1, most=65_536)
+"""Rule of a number of elements in one direction."""
 
+PATCH = partial(integer, least=1, most=4096)
+"""Rule of a number of elements of both directions of a patch."""
+
+
+def increasing(field: str, value: Any) -> Array:
+    """Two or more numbers, each larger than the one before."""
+    found = array(field, value, shape=(None,))
+    if len(found) < 2 or not (np.diff(found) > 0.0).all():
+        raise refusal(field, value, "two or more increasing numbers are needed", "sort them")
+    return found
+
+
+@checked(
+    breaks=increasing,
+    degree=partial(integer, least=0, most=32),
+    continuity=partial(integer, least=-1),
+)
 def open_knots(breaks: ArrayLike, degree: int, continuity: int | None = None) -> Array:
     """Knot vector clamped at both ends with interior knots of equal smoothness.
 
@@ -21,8 +47,15 @@ def open_knots(breaks: ArrayLike, degree: int, continuity: int | None = None) ->
     Returns
     -------
     knots : (m - 1) * (degree - continuity) + 2 * (degree + 1) values.
+
+    Raises
+    ------
+    SceneError
+        Breaks that do not increase; a continuity that is not below the degree.
     """
     t = np.asarray(breaks, float)
+    if continuity is not None:
+        integer("continuity", continuity, least=-1, most=degree - 1)
     multiplicity = 1 if continuity is None else degree - continuity
     interior = np.repeat(t[1:-1], multiplicity)
     return np.concatenate([np.repeat(t[:1], degree + 1), interior, np.repeat(t[-1:], degree + 1)])

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..errors import SceneError
 from .space import Space
@@ -26,6 +27,7 @@ def ring_angles(space: Space) -> Array:
     return np.asarray(2.0 * np.pi * ring.abscissae / (ring.breaks[-1] - ring.breaks[0]))
 
 
+@checked()
 def close_pole(space: Space) -> Space:
     """Close a ring patch at ``xi2 = end``.
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array, Index
+from ..checks import Rule, choice, words
 from ..errors import SceneError
 from .basis import Basis
 from .quadrature import gauss
@@ -19,6 +23,7 @@ Rows = dict[tuple[int, int], Array]
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Space:
     """Functions of two parameters ``(xi1, xi2)``.
 
@@ -246,9 +251,20 @@ class Space:
 
 
 EDGES = {"xi2=0": (0, 0), "xi2=1": (0, 1), "xi1=0": (1, 0), "xi1=1": (1, 1)}
+EDGE: Rule = words(*EDGES)
+"""Rule of the name of an edge."""
+
+
+def line(field: str, value: Any) -> str:
+    """Rule of an edge, or of a line inside the patch, "xi2=0.25"."""
+    inside = isinstance(value, str) and re.fullmatch(r"xi2=(0?\.\d+([eE]-\d+)?)", value)
+    return str(value) if inside else choice(field, value, EDGES)
+
+
 _ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 
 
+@checked()
 def tensor_space(one: Basis, two: Basis, weights: ArrayLike | None = None) -> Space:
     """Tensor product of two bases, rational if weights are given.
 

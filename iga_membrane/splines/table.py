@@ -8,10 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array, Index
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Table:
     """Functions of a space at the quadrature points of some elements.
 

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import record
 from ..errors import SceneError
 from ..splines import Basis, bspline_basis, tensor_space
 from .bezier import bezier_net
@@ -29,6 +31,9 @@ def from_geomdl(surface: Any) -> Surface:
     SceneError
         Knots or weights that are not valid; the message names the first bad one.
     """
+    from geomdl import BSpline
+
+    record("surface", surface, BSpline.Surface)
     bases = [
         bspline_basis(surface.knotvector_u, surface.degree_u, continuity=0),
         bspline_basis(surface.knotvector_v, surface.degree_v, continuity=0),
@@ -46,6 +51,7 @@ def from_geomdl(surface: Any) -> Surface:
     return Surface(tensor_space(bases[0], bases[1], weights), points)
 
 
+@checked()
 def to_geomdl(surface: Surface) -> Any:
     """``geomdl.NURBS.Surface`` (or ``BSpline.Surface`` without weights) of any surface.
 

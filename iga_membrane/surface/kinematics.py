@@ -11,10 +11,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Kinematics:
     """Position and derivatives of a surface at any set of points; the rest follows on demand.
 

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import checked
 from ..arrays import Array, Index
 from ..errors import GeometryError
 from ..splines import Space, net_of
@@ -24,6 +25,7 @@ from .surface import Surface
 
 
 @dataclass(frozen=True, eq=False)
+@checked()
 class Motion:
     """Linear map from unknowns to displacements of control points: rows (point, direction,
     unknown), and shifts in which many points take part.
@@ -78,6 +80,7 @@ class Spines:
     extra : arrays (count,) of the rows of each control point after its first, or the spare row.
     """
 
+    @checked()
     def __init__(
         self,
         surface: Surface,

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import integer
 from ..errors import SceneError
 from ..splines import Basis, bspline_basis, insertion_matrix, tensor_space
 from .surface import Surface
 
 
+@checked()
 def refined(surface: Surface, new1: ArrayLike = (), new2: ArrayLike = ()) -> Surface:
     """Insert knots in the two directions (Boehm); the surface stays the same.
 
@@ -24,17 +28,26 @@ def refined(surface: Surface, new1: ArrayLike = (), new2: ArrayLike = ()) -> Sur
     Raises
     ------
     SceneError
-        For a Lagrange, periodic or polar space.
+        For a Lagrange, periodic or polar space, or a knot outside of the patch.
     """
     bases, operators = [], []
-    for basis, new in zip(_open_bases(surface), (new1, new2), strict=True):
+    both = (("new1", new1), ("new2", new2))
+    for basis, (name, new) in zip(_open_bases(surface), both, strict=True):
         assert basis.knots is not None
+        first, last = basis.knots[[0, -1]]
+        outside = [float(t) for t in np.ravel(new) if not first < t < last]
+        if outside:
+            raise SceneError(
+                f"{name} = {outside[0]!r}: a new knot must lie inside the patch, between "
+                f"{first:g} and {last:g}"
+            )
         knots, matrix = insertion_matrix(basis.knots, basis.degree, new)
         bases.append(bspline_basis(knots, basis.degree, continuity=0))
         operators.append(matrix)
     return _carried(surface, bases, operators)
 
 
+@checked(by=partial(integer, least=0, most=8))
 def elevated(surface: Surface, by: int = 1) -> Surface:
     """Raise the degree in both directions, keeping the smoothness; the surface stays the same.
 

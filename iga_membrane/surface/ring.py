@@ -8,11 +8,19 @@ energies feel only its square.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import answer_of, either, function, integer, number, words
+from ..errors import SceneError
 from ..splines import (
+    DEGREE,
+    PATCH,
+    POLYNOMIALS,
     Basis,
     BasisOf,
     Space,
@@ -25,7 +33,18 @@ from ..splines import (
 from ..splines.quadrature import gauss
 from .surface import Surface
 
+PATCHES: dict[str, Any] = {
+    "kind": either(words(*POLYNOMIALS, "nurbs"), partial(function, arguments=2)),
+    "degree": DEGREE,
+    "elements": PATCH,
+    "sectors": PATCH,
+    "angle": partial(number, above=0.0, most=2.0 * np.pi),
+    "around": PATCH,
+}
+"""Rules of the arguments of ring patches."""
 
+
+@checked(**PATCHES)
 def ring_space(
     kind: str | BasisOf,
     degree: int,
@@ -53,6 +72,8 @@ def ring_space(
     kink : element along the meridian at whose start splines have continuity 0: a contact line
         inside the patch.
     """
+    if kink is not None:
+        integer("kink", kink, least=1, most=elements - 1)
     if around is None:
         around = 8 * elements if corners else 2 * elements
     around = sectors * max(1, -(-around // sectors))
@@ -69,6 +90,7 @@ def ring_space(
     return tensor_space(ring, meridian, weights)
 
 
+@checked(**PATCHES)
 def drop_space(
     kind: str | BasisOf,
     degree: int,
@@ -131,6 +153,7 @@ def rational_matrix(space: Space, t: Array, derivative: int = 0) -> Array:
     return np.asarray((matrix - basis.matrix(t) * (slope / total)[:, None]) * w / total[:, None])
 
 
+@checked()
 def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Array]]) -> Surface:
     """Interpolate a surface of revolution in a ring space.
 
@@ -138,9 +161,16 @@ def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Ar
     ----------
     space : of a ring patch, open or closed by a pole.
     profile : ``t -> (r, z, dr/dt)`` along ``xi2``; at a pole (t = 1) ``r = 0`` and ``dz/dt = 0``.
+
+    Raises
+    ------
+    SceneError
+        A space that is no ring; a profile that does not return three arrays as long as its own.
     """
+    if not space.bases[0].periodic:
+        raise SceneError("space: a surface of revolution needs a ring, build it by ring_space")
     points, matrix = meridian_interpolation(space)
-    r, z, slope = (np.array(values, float) for values in profile(points))
+    r, z, slope = answer_of(profile, profile(points), ("r", "z", "dr/dt"), points.shape)
     if space.pole == 1:
         r[-2], z[-2] = slope[-2], 0.0
     r, z = np.linalg.solve(matrix, np.stack([r, z], axis=1)).T

@@ -5,8 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import POSITIVE, contact_angle
 from ..splines import (
+    DEGREE,
+    KIND,
+    PATCH,
     Basis,
     BasisOf,
     bspline_basis,
@@ -53,6 +58,7 @@ def revolution(basis: Basis, profile: ArrayLike, weights: Array) -> Surface:
     return Surface(space, net.reshape(-1, 3))
 
 
+@checked(radius=POSITIVE)
 def sphere(radius: float = 1.0) -> Surface:
     """Exact sphere about the origin, outward normal, poles on the z axis.
 
@@ -64,6 +70,7 @@ def sphere(radius: float = 1.0) -> Surface:
     return revolution(basis, radius * points, weights)
 
 
+@checked(radius=POSITIVE, contact_angle=contact_angle)
 def cap(radius: float, contact_angle: float) -> Surface:
     """Exact spherical cap on z = 0 that meets the plane at ``contact_angle`` (degrees, inside).
 
@@ -77,6 +84,7 @@ def cap(radius: float, contact_angle: float) -> Surface:
     return revolution(basis, radius * (points - [0.0, np.cos(theta)]), weights)
 
 
+@checked(radius=POSITIVE, height=POSITIVE)
 def cylinder(radius: float, height: float) -> Surface:
     """Exact open cylinder about the z axis from z = 0 to ``height``, outward normal.
 
@@ -88,6 +96,7 @@ def cylinder(radius: float, height: float) -> Surface:
     return revolution(basis, [[radius, 0.0], [radius, height]], np.ones(2))
 
 
+@checked(radius=POSITIVE)
 def disc(radius: float) -> Surface:
     """Exact flat disc in z = 0, normal up.
 
@@ -99,6 +108,7 @@ def disc(radius: float) -> Surface:
     return revolution(basis, [[radius, 0.0], [0.0, 0.0]], np.ones(2))
 
 
+@checked(size=POSITIVE, elements=PATCH, degree=DEGREE, space=KIND)
 def sheet(
     size: float, *, elements: int = 8, degree: int = 3, space: str | BasisOf = "bspline"
 ) -> Surface:

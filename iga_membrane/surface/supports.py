@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from functools import partial
+from typing import Any, Literal
 
-from ..checks import choice
+from ..arguments import checked
+from ..checks import NOT_NEGATIVE, items, number, words
 from ..solids.sphere import Sphere
-from ..splines.space import EDGES
+from ..splines import EDGE
+
+
+def _reach(field: str, value: Any) -> float:
+    """A length > 0, which may be infinite."""
+    endless = isinstance(value, float) and value == float("inf")
+    return value if endless else number(field, value, above=0.0)
 
 
 @dataclass(frozen=True)
+@checked(edge=EDGE)
 class Fixed:
     """An edge whose control points do not move: a rim.
 
@@ -21,11 +30,9 @@ class Fixed:
 
     edge: str
 
-    def __post_init__(self) -> None:
-        choice("edge", self.edge, EDGES)
-
 
 @dataclass(frozen=True)
+@checked(edge=EDGE, reach=_reach)
 class Sliding:
     """An edge that slides on a solid: a contact line.
 
@@ -41,11 +48,9 @@ class Sliding:
     solid: Sphere | None = None
     reach: float = float("inf")
 
-    def __post_init__(self) -> None:
-        choice("edge", self.edge, EDGES)
-
 
 @dataclass(frozen=True)
+@checked()
 class Symmetry:
     """A mirror plane through the origin, normal to an axis; edges that lie in it stay in it.
 
@@ -56,11 +61,9 @@ class Symmetry:
 
     axis: Literal["x", "y", "z"]
 
-    def __post_init__(self) -> None:
-        choice("axis", self.axis, "xyz")
-
 
 @dataclass(frozen=True)
+@checked(edges=partial(items, each=EDGE, count=2))
 class Joint:
     """Two edges of equal control points that move together: the seam between patches.
 
@@ -71,12 +74,9 @@ class Joint:
 
     edges: tuple[str, str] = ("xi1=0", "xi1=1")
 
-    def __post_init__(self) -> None:
-        for edge in self.edges:
-            choice("edge", edge, EDGES)
-
 
 @dataclass(frozen=True)
+@checked()
 class Sector:
     """The part of a ring or square patch that is computed; the rest are mirror images of it.
 
@@ -90,9 +90,6 @@ class Sector:
 
     model: Literal["full", "half", "quarter", "eighth"] = "full"
 
-    def __post_init__(self) -> None:
-        choice("model", self.model, ("full", "half", "quarter", "eighth"))
-
     @property
     def copies(self) -> int:
         """How many sectors make the whole."""
@@ -105,6 +102,7 @@ class Sector:
 
 
 @dataclass(frozen=True)
+@checked(axes=words("x", "y", "xy"), above=NOT_NEGATIVE)
 class Shift:
     """A body that lies on a solid may also be shifted along some axes as a whole, but for its foot.
 
@@ -120,9 +118,6 @@ class Shift:
 
     axes: str
     above: float = 0.0
-
-    def __post_init__(self) -> None:
-        choice("axes", self.axes, ("x", "y", "xy"))
 
 
 Support = Fixed | Sliding | Symmetry | Joint | Sector | Shift

@@ -8,13 +8,16 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import checked
 from ..arrays import Array
+from ..checks import anything, shown
 from ..errors import GeometryError
 from ..splines import Space, Table, net_of
 from .kinematics import Kinematics
 
 
 @dataclass(frozen=True, eq=False)
+@checked(points=anything)
 class Surface:
     """Parametric surface ``x(xi) = sum_i N_i(xi) X_i``.
 
@@ -28,9 +31,15 @@ class Surface:
     points: Array = field(repr=False)
 
     def __post_init__(self) -> None:
-        points = np.asarray(self.points)
+        try:
+            points = np.asarray(self.points)
+        except ValueError:
+            points = np.asarray(None)
         if points.dtype == object or not np.issubdtype(points.dtype, np.floating):
-            raise GeometryError(f"control points: dtype {points.dtype} given, float64 expected")
+            raise GeometryError(
+                f"control points = {shown(self.points)}: dtype {points.dtype} given, float64 "
+                f"expected, an array of shape {(self.space.count, 3)}"
+            )
         if points.dtype.itemsize < 8:
             warnings.warn(
                 f"control points: {points.dtype} given, computed in float64 with its digits",

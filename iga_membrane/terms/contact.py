@@ -7,13 +7,16 @@ of energy, here by a smooth well whose range is shorter than the mesh resolves.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
-from ..checks import number
+from ..arguments import checked
+from ..checks import NOT_NEGATIVE, POSITIVE, number
 from ..solids import Solid
 from .term import Scale, Term
 
 
 @dataclass(frozen=True)
+@checked(radius=POSITIVE, pressure=partial(number, smallest=0.0))
 class Ring:
     """Where an asperity carries a membrane whose mesh is too coarse for its wet spot.
 
@@ -32,6 +35,12 @@ class Ring:
 
 
 @dataclass(frozen=True, eq=False)
+@checked(
+    penalty="solver.penalty",
+    depth="solver.penetration_tolerance",
+    adhesion=NOT_NEGATIVE,
+    compliance=NOT_NEGATIVE,
+)
 class Contact(Term):
     """The gap to a solid is not negative, paper section 4.
 
@@ -55,13 +64,6 @@ class Contact(Term):
     ring: Ring | None = None
     compliance: float = 0.0
     name = "contact"
-
-    def __post_init__(self) -> None:
-        if self.penalty is not None:
-            number("solver.penalty", self.penalty, above=0.0)
-        number("solver.penetration_tolerance", self.depth, above=0.0)
-        number("adhesion", self.adhesion, least=0.0)
-        number("compliance", self.compliance, least=0.0)
 
     def scaled(self, scale: Scale) -> Contact:
         unit = scale.length**2 / scale.tension

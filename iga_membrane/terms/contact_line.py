@@ -9,13 +9,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, contact_angle, number
-from ..splines import EdgeTable
+from ..checks import choice, contact_angle
+from ..splines import EdgeTable, line
 from .term import LINE_EDGES, BodyDensity, LineTerm, Scale
 
 
 @dataclass(frozen=True)
+@checked(gamma="liquid.surface_tension", contact_angle=contact_angle, edge=line)
 class PlaneContactLine(LineTerm):
     """Energy ``-gamma cos(theta) A_wet`` of the wetted part of the plane z = 0.
 
@@ -39,8 +41,6 @@ class PlaneContactLine(LineTerm):
     name = "wetting"
 
     def __post_init__(self) -> None:
-        number("liquid.surface_tension", self.gamma, above=0.0)
-        contact_angle("substrate.contact_angle", self.contact_angle)
         if not self.covered:
             choice("edge", self.edge, LINE_EDGES)
 

@@ -11,12 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..solids.sphere import Sphere
-from ..splines import EdgeTable
+from ..splines import EDGE, EdgeTable
 
 
 @dataclass(frozen=True)
+@checked(edge=EDGE)
 class EdgeGap:
     """Gap integrals of an edge against its own functions.
 

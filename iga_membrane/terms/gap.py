@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..solids import Nearest, Solid
 from ..splines import Table
@@ -70,6 +71,7 @@ class Law:
 
 
 @dataclass(frozen=True)
+@checked()
 class LocalGap(Term):
     """A law of the gap in the scale and frame of a scene.
 

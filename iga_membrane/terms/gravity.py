@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..checks import number, vector
+from ..arguments import checked
 from .term import BodyDensity, BodyTerm, Scale
 
 
 @dataclass(frozen=True)
+@checked(density_of_liquid="liquid.density")
 class Gravity(BodyTerm):
     """Weight of the liquid: potential energy per volume, the hydrostatic pressure of eq. (21).
 
@@ -25,10 +26,6 @@ class Gravity(BodyTerm):
     density_of_liquid: float
     acceleration: tuple[float, float, float]
     name = "gravity"
-
-    def __post_init__(self) -> None:
-        number("liquid.density", self.density_of_liquid, least=0.0)
-        vector("gravity", self.acceleration)
 
     def density(self) -> BodyDensity:
         x, y, z = (-self.density_of_liquid * g for g in self.acceleration)

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..solids import Plane, Sphere
-from ..splines import EdgeTable
+from ..splines import EdgeTable, line
 from .term import BodyDensity, LineTerm, Scale
 
 
 @dataclass(frozen=True)
+@checked(gamma="liquid.surface_tension", edge=line)
 class NormalLineLoad(LineTerm):
     """The load ``q_n = gamma sin(theta)`` that presses a contact line onto its solid against the
     normal pull of the liquid-gas surface, paper eq. (31).

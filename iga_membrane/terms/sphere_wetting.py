@@ -19,11 +19,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, number
+from ..checks import choice, direction
 from ..errors import GeometryError
 from ..solids.sphere import Sphere
-from ..splines import EdgeTable
+from ..splines import EdgeTable, line
 from ..splines.space import EDGES
 from .term import BodyDensity, LineTerm, Scale
 from .variations import cross
@@ -32,6 +33,7 @@ RING_EDGES = ("xi2=0", "xi2=1")
 
 
 @dataclass(frozen=True)
+@checked(gamma="liquid.surface_tension", edge=line, toward=direction)
 class SphereContactLine(LineTerm):
     """Energy ``-gamma cos(theta) A_wet`` of a sphere that the liquid wets, and the part of body
     integrals that lies under the wetted cap.
@@ -53,7 +55,6 @@ class SphereContactLine(LineTerm):
     name = "wetting"
 
     def __post_init__(self) -> None:
-        number("liquid.surface_tension", self.gamma, above=0.0)
         if not self.covered:
             choice("edge", self.edge, RING_EDGES)
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import number
 from ..splines import Table
 from .pairs import COMPONENTS, Form, components
 from .term import Scale, Term
@@ -23,6 +23,7 @@ from .variations import ElementPoints
 
 
 @dataclass(frozen=True)
+@checked(mu="solver.stabilization")
 class Stabilization(Term):
     """How strongly a membrane with three unknowns per control point is held in its plane.
 
@@ -36,9 +37,6 @@ class Stabilization(Term):
     mu: float
     projected: bool = False
     name = "stabilization"
-
-    def __post_init__(self) -> None:
-        number("solver.stabilization", self.mu, above=0.0)
 
     def scaled(self, scale: Scale) -> Stabilization:
         return Stabilization(self.mu / scale.tension, self.projected)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..checks import number
+from ..arguments import checked
 from .term import AreaTerm, Scale
 
 
 @dataclass(frozen=True)
+@checked(gamma="liquid.surface_tension")
 class SurfaceTension(AreaTerm):
     """``gamma`` times the area: the constant in-plane stress of the paper, between eqs (19)
     and (20).
@@ -20,9 +21,6 @@ class SurfaceTension(AreaTerm):
 
     gamma: float
     name = "surface_tension"
-
-    def __post_init__(self) -> None:
-        number("liquid.surface_tension", self.gamma, above=0.0)
 
     def tension(self) -> float:
         return self.gamma

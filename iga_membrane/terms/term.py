@@ -11,18 +11,37 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array, Index
+from ..checks import POSITIVE, array, items, real, refusal
+from ..errors import SceneError
 from ..solids import Nearest, Plane, Solid, Sphere, SphereLattice, Spheres
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
 
 
+def _rotation(field: str, value: Any) -> tuple[tuple[float, ...], ...]:
+    """Three unit vectors at right angles."""
+    turn = array(field, value, shape=(3, 3))
+    if np.abs(turn.T @ turn - np.eye(3)).max() > 1e-9:
+        raise refusal(
+            field, value, "must be a rotation", "give it columns of length 1 at right angles"
+        )
+    return tuple(tuple(float(a) for a in row) for row in turn)
+
+
+ROOM = 1e150
+"""Sizes of the units of a scene: their squares are doubles."""
+
+
 @dataclass(frozen=True)
+@checked(length=POSITIVE, tension=POSITIVE, rotation=_rotation)
 class Scale:
     """Units in which a scene is solved: a length, a tension, and a frame.
 
@@ -39,6 +58,18 @@ class Scale:
     tension: float = 1.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rotation: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+    def __post_init__(self) -> None:
+        length, tension = self.length, self.tension
+        units = {"length^3": length**3, "tension length^2": tension * length**2,
+                 "tension / length": tension / length}  # fmt: skip
+        for name, size in units.items():
+            if not 1.0 / ROOM < size < ROOM:
+                raise SceneError(
+                    f"scale: length = {length:g}, tension = {tension:g}: their {name} = {size:g} "
+                    f"leaves no room in double precision, it must be between {1.0 / ROOM:g} and "
+                    f"{ROOM:g}; choose other units"
+                )
 
     @property
     def force(self) -> float:
@@ -139,6 +170,7 @@ class LocalSolid:
 
 
 @dataclass(frozen=True)
+@checked(constant=real, gradient=partial(items, each=real, count=3))
 class BodyDensity:
     """Energy per volume of liquid, ``constant + gradient . x``."""
 

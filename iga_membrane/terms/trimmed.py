@@ -22,8 +22,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import number
 from ..solids import Nearest, Solid, SphereLattice, Spheres
 from ..splines import LineTable
 from ..splines.quadrature import gauss
@@ -37,6 +37,7 @@ ARC = 12
 
 
 @dataclass(frozen=True, eq=False)
+@checked(gamma="liquid.surface_tension")
 class TrimmedContactLine(Term):
     """Energy ``-gamma cos(theta)`` of the solid's wetted surface, the membrane passing through it.
 
@@ -55,7 +56,6 @@ class TrimmedContactLine(Term):
     name = "wetting"
 
     def __post_init__(self) -> None:
-        number("liquid.surface_tension", self.gamma, above=0.0)
         if isinstance(self.solid, (SphereLattice, Spheres)) and self.solid.base is not None:
             object.__setattr__(self, "solid", replace(self.solid, base=None))
 

@@ -7,12 +7,18 @@ that is not the membrane lies in z = 0 or is vertical, and adds nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
-from ..checks import number
+from ..arguments import checked
+from ..checks import Rule, number, words
 from .term import BodyDensity, BodyTerm, Constraint, Scale
+
+ANY: Rule = partial(number, smallest=0.0)
+"""A number that may come near 0 by cancellation."""
 
 
 @dataclass(frozen=True)
+@checked(pressure=ANY)
 class Pressure(BodyTerm):
     """Prescribed pressure (liquid minus gas) at the origin's height: energy ``-p V``.
 
@@ -24,9 +30,6 @@ class Pressure(BodyTerm):
     pressure: float
     name = "pressure"
 
-    def __post_init__(self) -> None:
-        number("pressure", self.pressure)
-
     def density(self) -> BodyDensity:
         return BodyDensity(-self.pressure)
 
@@ -35,6 +38,7 @@ class Pressure(BodyTerm):
 
 
 @dataclass(frozen=True)
+@checked(value="liquid.volume", ends=ANY)
 class Volume(Constraint):
     """Prescribed volume of liquid; its multiplier is the pressure ``lambda`` of paper eq. (22).
 
@@ -53,9 +57,6 @@ class Volume(Constraint):
     def target(self) -> float:
         return self.value - self.ends
 
-    def __post_init__(self) -> None:
-        number("liquid.volume", self.value, above=0.0)
-
     def density(self) -> BodyDensity:
         return BodyDensity(1.0)
 
@@ -64,6 +65,7 @@ class Volume(Constraint):
 
 
 @dataclass(frozen=True)
+@checked(axis=words(*"xyz"), target=ANY)
 class Centroid(Constraint):
     """Holds the liquid's centroid at 0 along an axis by a uniform body force per volume, the
     multiplier.

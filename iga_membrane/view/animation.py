@@ -6,21 +6,21 @@ import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ..checks import number
+from ..arguments import checked
+from ..checks import POSITIVE
 from ..errors import OutputError, SceneError
 from ..files import check_folder, write_whole
+from ..solver.solution import Solution
 from ..solver.trace import Path as Walk
 from .fields import field
 from .picture import extent, plot
 
-if TYPE_CHECKING:
-    from ..solver.solution import Solution
 
-
+@checked(seconds=POSITIVE)
 def animate(
     solutions: Walk | Sequence[Solution],
     path: str | os.PathLike[str],
@@ -46,7 +46,6 @@ def animate(
         Another ending, a place that cannot be written, or a machine that cannot draw.
     """
     path = Path(path)
-    number("seconds", seconds, above=0.0)
     if path.suffix not in ("", ".gif"):
         raise OutputError(f"{path}: must end in .gif, or be a folder for frames")
     found = list(solutions.solutions if isinstance(solutions, Walk) else solutions)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..errors import SceneError
 from .figure import figure, write_figure
@@ -27,6 +28,7 @@ STYLES = ("-", "--", ":", "-.")
 """Of the lines of several columns."""
 
 
+@runtime_checkable
 class Table(Protocol):
     """What has columns: a sweep or a path."""
 
@@ -34,6 +36,7 @@ class Table(Protocol):
         """(rows,) numbers."""
 
 
+@checked()
 def plot_curves(
     table: Table,
     path: str | os.PathLike[str],
@@ -85,6 +88,7 @@ def plot_curves(
     write_figure(made, path)
 
 
+@checked()
 def plot_phases(
     table: Table,
     path: str | os.PathLike[str],

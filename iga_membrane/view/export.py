@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ..arguments import checked
 from ..errors import OutputError
 from ..files import write_whole
-
-if TYPE_CHECKING:
-    from ..solver.solution import Solution
+from ..solver.solution import Solution
 
 
+@checked()
 def save(solution: Solution, path: str | Path) -> None:
     """Write a solution.
 

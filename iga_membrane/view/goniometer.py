@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..solver.apparent import profile
 from ..solver.lines import contact_lines
 from ..solver.measures import own_asperity
+from ..solver.solution import Solution
 from .fields import solids
 from .figure import figure, write_figure
-from .mesh import membrane, outside, trimming_solid
-
-if TYPE_CHECKING:
-    from ..solver.solution import Solution
+from .mesh import RESOLUTION, membrane, outside, trimming_solid
 
 SHADOW, PROFILE, TANGENT = "#101418", "#ff9f1c", "#e71d36"
 
 
+@checked(resolution=RESOLUTION)
 def plot_side(
     solution: Solution,
     path: str | os.PathLike[str],

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arrays import Array
+from ..checks import integer
 from ..solids import Solid
 from ..terms import TrimmedContactLine
 from .drawing import pyvista
@@ -14,6 +16,9 @@ from .fields import field
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
+
+RESOLUTION = partial(integer, least=2, most=4097)
+"""Rule of the number of points along a direction of a patch that is drawn."""
 
 
 def membrane(

@@ -4,25 +4,35 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, vector
+from ..checks import (
+    POSITIVE,
+    direction,
+    either,
+    integer,
+    items,
+    number,
+    pair,
+    refusal,
+    vector,
+    words,
+)
 from ..errors import SceneError
+from ..solver.solution import Solution
 from .drawing import check_drawing, pyvista, trial
 from .marks import add_forces, add_lines
-from .mesh import membrane, outside, trimming_solid
+from .mesh import RESOLUTION, membrane, outside, trimming_solid
 from .solids import add_solids
-
-if TYPE_CHECKING:
-    from ..solver.solution import Solution
 
 Color = Literal["none", "mean_curvature", "pressure", "gap", "residual"]
 View = Literal["oblique", "foot", "side", "top"] | tuple[float, float, float]
 
-COLORS = ("none", "mean_curvature", "pressure", "gap", "residual")
 VIEWS = {"oblique": (1.0, -2.2, 0.55), "foot": (1.0, -2.2, 0.2), "side": (0.0, -1.0, 0.0),
          "top": (0.0, 0.0, 1.0)}  # fmt: skip
 """Directions from the middle of the picture to the eye, in the scene's frame."""
@@ -35,6 +45,23 @@ HALF_HEIGHT = DISTANCE * float(np.tan(np.radians(15.0)))
 LIQUID = {"color": "#5b9bd5", "specular": 0.6, "specular_power": 25, "ambient": 0.15}
 
 
+def _limits(field: str, value: Any) -> tuple[float, float]:
+    """A lowest and a larger highest value."""
+    low, high = pair(field, value)
+    if not low < high:
+        raise refusal(field, value, "a lowest and a highest value are needed", "sort them")
+    return low, high
+
+
+@checked(
+    size=partial(items, each=partial(integer, least=16, most=16_384), count=2),
+    resolution=RESOLUTION,
+    opacity=partial(number, least=0.0, most=1.0),
+    view=either(words(*VIEWS), direction),
+    zoom=POSITIVE,
+    focus=either(words("asperity"), vector),
+    limits=_limits,
+)
 def plot(
     solution: Solution,
     path: str | os.PathLike[str] | None = None,
@@ -83,7 +110,6 @@ def plot(
     OutputError
         If this machine cannot draw, with what to install.
     """
-    choice("color", color, COLORS)
     axes = solution.scene.units.axes
     eye = _eye(view, axes)
     middle, span, near = _frame(solution, focus, eye)
@@ -123,12 +149,9 @@ def plot(
 
 def _eye(view: View, axes: Array) -> Array:
     """(3,) unit vector from the middle of the picture to the eye, in world axes."""
-    direction = VIEWS[choice("view", view, VIEWS)] if isinstance(view, str) else view
-    eye = axes @ np.array(vector("view", direction))
-    size = float(np.linalg.norm(eye))
-    if not size:
-        raise SceneError("view = (0, 0, 0): a direction must not be zero")
-    return np.asarray(eye / size)
+    eye = axes @ np.array(VIEWS[view] if isinstance(view, str) else view)
+    eye = eye / np.abs(eye).max()
+    return np.asarray(eye / np.linalg.norm(eye))
 
 
 def extent(solution: Solution) -> tuple[Array, float]:
@@ -146,8 +169,7 @@ def _frame(
     if focus is None:
         return middle, span, None
     if not isinstance(focus, str):
-        return np.array(vector("focus", focus)), span, None
-    choice("focus", focus, ("asperity",))
+        return np.array(focus), span, None
     wet = solution.contact.get("asperities", ())
     if not wet:
         raise SceneError('focus = "asperity": no asperity is wet here; give a point [x, y, z]')

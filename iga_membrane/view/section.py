@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..arguments import checked
 from ..arrays import Array
 from ..reference import profile_on_plane
 from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solver.solution import Solution
 from .fields import solids
 from .figure import figure, write_figure
-from .mesh import membrane, outside, trimming_solid
-
-if TYPE_CHECKING:
-    from ..solver.solution import Solution
+from .mesh import RESOLUTION, membrane, outside, trimming_solid
 
 SOLID, LIQUID = "#d9d2c5", "#1f5f99"
 BESIDE = 1e-4
 """Distance of the drawn section from y = 0, over the scene's length."""
 
 
+@checked(resolution=RESOLUTION)
 def plot_section(
     solution: Solution, path: str | os.PathLike[str], *, resolution: int = 129
 ) -> float | None:

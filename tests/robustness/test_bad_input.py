@@ -11,7 +11,9 @@ import pytest
 from helpers import droplet
 
 import iga_membrane as iga
-from iga_membrane.scenes.scene_keys import _LIMITS, KEYS
+from iga_membrane.checks import contact_angle
+from iga_membrane.fields import FIELDS as RULES
+from iga_membrane.scenes.scene_keys import KEYS
 
 DROPLET = """
 scene = "sessile_droplet"
@@ -193,7 +195,9 @@ FREE = {("sheet", "pressure"), ("sheet", "volume"), ("cell", "pressure"), ("ring
 """Fields of which any finite number is right: the volume of a sheet has a sign."""
 
 
-def below(limits):
+def below(rule):
+    rule = getattr(rule, "keywords", {}).get("each", rule)
+    limits = {"above": 0.0, "most": 180.0} if rule is contact_angle else rule.keywords
     least = limits.get("above", limits.get("least", 0.0))
     values = [least - 1.0] + ([least, least - 1e-9] if "above" in limits else [])
     return values + ([1.01 * limits["most"], 200.0] if "most" in limits else [])
@@ -201,7 +205,7 @@ def below(limits):
 
 @pytest.mark.parametrize(("table", "key"), [field for field in FIELDS if field not in FREE])
 def test_every_field_refuses_what_is_out_of_range(table, key):
-    for value in OUT.get(key) or below(_LIMITS[key]):
+    for value in OUT.get(key) or below(RULES[f"{table}.{key}"]):
         refused(lambda v=value: iga.read_scene(with_value(table, key, v)), table, key, value)
 
 

@@ -1,0 +1,174 @@
+"""Arguments of public functions and fields of records, checked where they come in.
+
+What kind of value an argument is follows from its annotation; its range, where it has one, from the
+table of fields (:mod:`.fields`) or from a rule of its own. Nothing else is written at a function.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial, wraps
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import checks
+from .checks import Rule
+from .fields import FIELDS
+
+T = TypeVar("T", bound=Callable[..., Any])
+PLAIN: dict[Any, Rule] = {
+    float: checks.number,
+    int: checks.integer,
+    bool: checks.flag,
+    str: checks.text,
+    ArrayLike: checks.array,
+}
+"""Annotation to its rule."""
+
+
+def checked(table: str = "", /, **rules: Rule | str) -> Callable[[T], T]:
+    """Check every argument of a function, or every field of a dataclass (below ``@dataclass``).
+
+    Parameters
+    ----------
+    table : of the scene file whose fields the arguments are.
+    rules : argument to the path of its field, or to a rule where there is no such field or only
+        some of its values are allowed. None is allowed where the annotation says so.
+    """
+
+    def of(thing: T) -> T:
+        return (_record if inspect.isclass(thing) else _function)(thing, table, rules)
+
+    return of
+
+
+def _function(call: Any, table: str, rules: Mapping[str, Rule | str]) -> Any:
+    signature = inspect.signature(call)
+
+    @cache
+    def known() -> dict[str, tuple[str, Rule]]:
+        return _rules(call, tuple(signature.parameters), table, rules)
+
+    @wraps(call)
+    def with_checks(*args: Any, **kwargs: Any) -> Any:
+        given = signature.bind(*args, **kwargs)
+        given.apply_defaults()
+        for name, (field, rule) in known().items():
+            given.arguments[name] = rule(field, given.arguments[name])
+        return call(*given.args, **given.kwargs)
+
+    return with_checks
+
+
+def _record(kind: Any, table: str, rules: Mapping[str, Rule | str]) -> Any:
+    further = kind.__dict__.get("__post_init__")
+
+    @cache
+    def known() -> dict[str, tuple[str, Rule]]:
+        return _rules(kind, tuple(f.name for f in dataclasses.fields(kind)), table, rules)
+
+    def check(self: Any) -> None:
+        for name, (field, rule) in known().items():
+            value = getattr(self, name)
+            found = rule(field, value)
+            if found is not value:
+                object.__setattr__(self, name, found)
+        if further is not None:
+            further(self)
+
+    check.__name__ = "__post_init__"
+    kind.__post_init__ = check
+    return kind
+
+
+def _rules(
+    thing: Any, names: Sequence[str], table: str, own: Mapping[str, Rule | str]
+) -> dict[str, tuple[str, Rule]]:
+    """Argument to the name of its field and its rule."""
+    hints, found = get_type_hints(thing), {}
+    for name in names:
+        field = f"{table}.{name}" if table else name
+        rule = own.get(name, FIELDS.get(field))
+        if isinstance(rule, str):
+            field, rule = rule, FIELDS[rule]
+        hint = hints.get(name, Any)
+        if rule is None:
+            rule = rule_of(hint)
+        elif NoneType in get_args(hint):
+            rule = _or_none(rule)
+        if rule is not None:
+            found[name] = field, rule
+    return found
+
+
+def rule_of(hint: Any) -> Rule | None:
+    """The rule of an annotation; None where it allows anything."""
+    if hint is Any:
+        return None
+    if hint in PLAIN:
+        return PLAIN[hint]
+    kind, inside = get_origin(hint) or hint, get_args(hint)
+    if kind in (Union, UnionType):
+        return _any_of(inside)
+    if kind is Literal:
+        return partial(checks.choice, allowed=inside)
+    if kind is np.ndarray:
+        wanted = get_args(inside[1])[0]
+        kinds = {np.floating: "f", np.integer: "iu", np.bool_: "b"}
+        return partial(checks.ndarray, kinds=kinds[get_origin(wanted) or wanted])
+    if kind is Callable:
+        known = inside and inside[0] is not Ellipsis
+        return partial(checks.function, arguments=len(inside[0]) if known else None)
+    if kind is tuple:
+        return _tuple(inside)
+    if kind in (Sequence, Iterable):
+        return partial(checks.items, each=rule_of(inside[0]) or checks.anything)
+    if kind is Mapping:
+        return partial(checks.mapping, each=rule_of(inside[1]))
+    if kind in (Path, os.PathLike):
+        return checks.path
+    return checks.instance(kind) if isinstance(kind, type) else None
+
+
+def _or_none(rule: Rule) -> Rule:
+    return lambda field, value: None if value is None else rule(field, value)
+
+
+def _tuple(inside: tuple[Any, ...]) -> Rule:
+    """Of one kind of values, as many as the annotation says."""
+    each = rule_of(inside[0]) or checks.anything
+    if inside[1:] == (Ellipsis,):
+        return lambda field, value: tuple(checks.items(field, value, each=each))
+    if inside == (float, float, float):
+        return checks.vector
+    if inside == (float, float):
+        return checks.pair
+    parts = [rule_of(one) or checks.anything for one in inside]
+
+    def rule(field: str, value: Any) -> Any:
+        listed = checks.items(field, value, each=checks.anything, count=len(parts))
+        return tuple(
+            part(f"{field}[{i}]", one)
+            for i, (part, one) in enumerate(zip(parts, listed, strict=True))
+        )
+
+    return rule
+
+
+def _any_of(kinds: tuple[Any, ...]) -> Rule | None:
+    """One of several annotations; a wrong value is told the first one's rule."""
+    if str in kinds and {Path, os.PathLike} & {get_origin(kind) or kind for kind in kinds}:
+        kinds = (Path, *(kind for kind in kinds if kind is NoneType))
+    rules = [rule_of(kind) for kind in kinds if kind is not NoneType]
+    if None in rules:
+        return None
+
+    rule = checks.either(*(one for one in rules if one is not None))
+    return _or_none(rule) if NoneType in kinds else rule

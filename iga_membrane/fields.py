@@ -1,0 +1,86 @@
+"""The fields of a scene, each with its rule: for scene files and for Python alike.
+
+A file's value that its rule refuses is refused in Python too, and by the same words. What only some
+kinds of scenes allow is narrowed where they are made.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from .checks import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Rule,
+    contact_angle,
+    direction,
+    either,
+    flag,
+    integer,
+    items,
+    number,
+    one_or_more,
+    pair,
+    path_values,
+    state_file,
+    text,
+    vector,
+    words,
+)
+
+FIELDS: dict[str, Rule] = {
+    "liquid.surface_tension": POSITIVE,
+    "liquid.density": NOT_NEGATIVE,
+    "liquid.volume": POSITIVE,
+    "gravity.acceleration": NOT_NEGATIVE,
+    "gravity.direction": direction,
+    "substrate.kind": words("plane", "sphere", "sphere_lattice", "spheres", "none"),
+    "substrate.contact_angle": partial(one_or_more, each=contact_angle),
+    "substrate.radius": POSITIVE,
+    "substrate.spacing": POSITIVE,
+    "substrate.arrangement": words("square", "hexagonal"),
+    "substrate.offset": pair,
+    "substrate.centers": partial(items, each=vector, least=1),
+    "substrate.radii": partial(one_or_more, each=POSITIVE),
+    "substrate.base": number,
+    "particle.radius": POSITIVE,
+    "particle.center": vector,
+    "particle.density": NOT_NEGATIVE,
+    "particle.contact_angle": contact_angle,
+    "particle.motion": words("fixed", "vertical", "normal", "resting"),
+    "droplet.hold": words("none", "x", "xy", "xyz"),
+    "sheet.boundary": words("square", "circle"),
+    "sheet.size": POSITIVE,
+    "sheet.pressure": number,
+    "sheet.volume": number,
+    "sheet.liquid_weight": flag,
+    "cell.shape": words("square", "circle"),
+    "cell.size": POSITIVE,
+    "cell.pressure": POSITIVE,
+    "rings.radius": POSITIVE,
+    "rings.half_height": POSITIVE,
+    "rings.volume": POSITIVE,
+    "rings.pressure": number,
+    "discretization.space": words("bspline", "nurbs", "lagrange"),
+    "discretization.degree": partial(integer, least=1, most=4),
+    "discretization.elements": partial(integer, least=3, most=4096),
+    "discretization.model": words("full", "half", "quarter", "eighth"),
+    "solver.motion": words("spines", "cartesian"),
+    "solver.stabilization": POSITIVE,
+    "solver.contact": words("exact", "penalty"),
+    "solver.penalty": POSITIVE,
+    "solver.penetration_tolerance": POSITIVE,
+    "solver.contact_line": words("auto", "conforming", "trimmed", "adhesion", "line_load"),
+    "solver.start": either(words("auto", "flat", "above", "touching"), state_file),
+    "solver.follow_instability": flag,
+    "solver.max_cpu_s": POSITIVE,
+    "solver.max_memory_gb": POSITIVE,
+    "path.parameter": text,
+    "path.values": path_values,
+}  # fmt: skip
+"""Path of a field in the scene file to its rule."""
+
+
+def keys_of(table: str) -> tuple[str, ...]:
+    """Keys of a table of the scene file."""
+    return tuple(path.partition(".")[2] for path in FIELDS if path.partition(".")[0] == table)
