@@ -39,8 +39,9 @@ def checked(table: str = "", /, **rules: Rule | str) -> Callable[[T], T]:
     Parameters
     ----------
     table : of the scene file whose fields the arguments are.
-    rules : argument to the path of its field, or to a rule where there is no such field or only
-        some of its values are allowed. None is allowed where the annotation says so.
+    rules : argument to the path of its field, by which messages call it if it ends in the
+        argument's name; or to a rule where there is no such field, or only some of its values are
+        allowed. None is allowed where the annotation says so.
     """
 
     def of(thing: T) -> T:
@@ -97,7 +98,7 @@ def _rules(
         field = f"{table}.{name}" if table else name
         rule = own.get(name, FIELDS.get(field))
         if isinstance(rule, str):
-            field, rule = rule, FIELDS[rule]
+            field, rule = rule if rule.endswith(f".{name}") else field, FIELDS[rule]
         hint = hints.get(name, Any)
         if rule is None:
             rule = rule_of(hint)
@@ -166,6 +167,8 @@ def _any_of(kinds: tuple[Any, ...]) -> Rule | None:
     """One of several annotations; a wrong value is told the first one's rule."""
     if str in kinds and {Path, os.PathLike} & {get_origin(kind) or kind for kind in kinds}:
         kinds = (Path, *(kind for kind in kinds if kind is NoneType))
+    if set(get_args(ArrayLike)) <= set(kinds):
+        return _or_none(checks.array)
     rules = [rule_of(kind) for kind in kinds if kind is not NoneType]
     if None in rules:
         return None

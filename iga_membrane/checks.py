@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .errors import SceneError
+from .errors import GeometryError, OutputError, SceneError, SolveError, StateError
 
 Rule = Callable[[str, Any], Any]
 """Field and value to the value, checked."""
@@ -122,6 +122,10 @@ def real(field: str, value: Any) -> Any:
     """Any real number, also one that is not finite: what a solve found."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise refusal(field, value, "must be a number", f"got {type(value).__name__}")
+    try:
+        float(value)
+    except OverflowError:
+        raise refusal(field, value, "must be a number in double precision") from None
     return value
 
 
@@ -283,6 +287,20 @@ def name_of(given: Any) -> str:
     return f"{named.__module__}.{named.__qualname__}"
 
 
+def called(call: Any, *given: Any) -> Any:
+    """What a function of the user's returns; an error in it, but for ours, blames it by its
+    name."""
+    try:
+        return call(*given)
+    except (SceneError, GeometryError, OutputError, StateError, SolveError):
+        raise
+    except Exception as error:
+        raise SceneError(
+            f"{name_of(call)}({', '.join(map(shown, given))}): raised {type(error).__name__}: "
+            f"{error}; mend the function"
+        ) from error
+
+
 def answer_of(
     call: Any, found: Any, names: Iterable[str], shape: tuple[int, ...], *, finite: bool = True
 ) -> list[Array]:
@@ -321,12 +339,11 @@ def array(field: str, value: Any, *, shape: tuple[int | None, ...] | None = None
         rule += f" of shape ({', '.join('n' if n is None else str(n) for n in shape)})"
     try:
         found = np.asarray(value)
-        fits = found.dtype.kind in "fiu"
-        found = found.astype(float, copy=False)
-    except (TypeError, ValueError, OverflowError):
-        raise refusal(field, value, rule, f"got {type(value).__name__}") from None
-    if not fits and found.size:
-        raise refusal(field, value, rule, f"got {np.asarray(value).dtype}")
+    except ValueError:
+        raise refusal(field, value, rule, "got rows of several lengths") from None
+    if found.size and found.dtype.kind not in "fiu":
+        raise refusal(field, value, rule, f"got {found.dtype}")
+    found = found.astype(float, copy=False)
     if shape is not None and not (
         found.ndim == len(shape)
         and all(n in (None, m) for n, m in zip(shape, found.shape, strict=True))
@@ -339,11 +356,23 @@ def array(field: str, value: Any, *, shape: tuple[int | None, ...] | None = None
     return found
 
 
-def ndarray(field: str, value: Any, *, kinds: str) -> Any:
-    """An array of numpy of some kinds of numbers, as it is: what the package computed."""
+def ndarray(
+    field: str, value: Any, *, kinds: str = "f", shape: tuple[int | None, ...] | None = None
+) -> Any:
+    """An array of numpy of some kinds of numbers, as it is: what the package computed.
+
+    Parameters
+    ----------
+    kinds : of numpy's types: "f" for floats, "iu" for whole numbers.
+    shape : of the last axes; None stands for any length.
+    """
     if not isinstance(value, (np.ndarray, np.generic)) or value.dtype.kind not in kinds:
         got = getattr(value, "dtype", type(value).__name__)
         raise refusal(field, value, "must be an array of numpy", f"got {got}")
+    last = value.shape[value.ndim - len(shape) :] if shape and value.ndim >= len(shape) else ()
+    if shape and not (last and all(n in (None, m) for n, m in zip(shape, last, strict=True))):
+        told = ", ".join("n" if n is None else str(n) for n in shape)
+        raise refusal(field, value, f"must have the axes (..., {told})", f"got {value.shape}")
     return value
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import checked
-from ..checks import anything, choice, integer, items, number
+from ..checks import anything, called, choice, integer, items, number, record
 from ..errors import OutputError, SceneError
 from ..fields import FIELDS
 from ..scenes.liquid import Discretization, Model, space_name
@@ -253,7 +253,7 @@ def convergence_study(
         for space, degree in spaces
         for count in sorted(elements)
     ]
-    scenes = [scene_of(mesh) for mesh in meshes]
+    scenes = [record("scene_of(mesh)", called(scene_of, mesh), Scene) for mesh in meshes]
     runs = tuple(
         _run(mesh, scene, exact, repeats, options)
         for mesh, scene in zip(meshes, scenes, strict=True)

@@ -9,7 +9,7 @@ from functools import partial
 from scipy.optimize import brentq
 
 from ..arguments import checked
-from ..checks import name_of, number, record
+from ..checks import called, name_of, number, record
 from ..errors import SceneError
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
@@ -64,8 +64,12 @@ def critical_value(
     solutions: dict[float, Solution] = {}
 
     def at(value: float) -> float:
-        solutions[value] = solve(record(f"scene_at({value:g})", scene_at(value), Scene), options)
-        return number(f"{name_of(measure)}(solution)", measure(solutions[value]), smallest=0.0)
+        solutions[value] = solve(
+            record(f"scene_at({value:g})", called(scene_at, value), Scene), options
+        )
+        return number(
+            f"{name_of(measure)}(solution)", called(measure, solutions[value]), smallest=0.0
+        )
 
     ends = at(low), at(high)
     if ends[0] * ends[1] > 0:

@@ -39,7 +39,7 @@ MOST = 1_000_000
 
 
 @dataclass(frozen=True)
-@checked()
+@checked(computed=partial(integer, least=0))
 class Sweep:
     """What a sweep found.
 

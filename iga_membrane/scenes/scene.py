@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import record
+from ..checks import array, record, words
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
@@ -112,7 +113,12 @@ class FreeParticles:
 
 
 @dataclass(frozen=True)
-@checked(motion="solver.motion", liquid_density="liquid.density")
+@checked(
+    directions=partial(array, shape=(None, 3)),
+    motion="solver.motion",
+    hold=words("", "x", "xy", "xyz"),
+    liquid_density="liquid.density",
+)
 class Scene:
     """Everything a solve needs to know.
 
@@ -191,6 +197,11 @@ class Scene:
                     "degrees, where the foot is a contact area; build the scene by "
                     "sessile_droplet or liquid_sheet, or hold the edge by Fixed"
                 )
+        if self.directions is not None and len(self.directions) != space.count:
+            raise SceneError(
+                f"directions: {len(self.directions)} given, one for each of the {space.count} "
+                "control points is needed"
+            )
         self._check_gaps()
         if "surface_tension" not in names:
             raise SceneError("terms: a membrane needs a SurfaceTension")

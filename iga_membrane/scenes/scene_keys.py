@@ -19,7 +19,7 @@ def table_of(name: str, value: Any, label: str | None = None) -> Mapping[str, An
     """A mapping with known keys only."""
     label = name if label is None else label
     if not isinstance(value, Mapping):
-        raise refusal(label or "scene file", value, "must be a table of keys and values")
+        raise refusal(label or "scene file (data)", value, "must be a table of keys and values")
     for key in value:
         if key not in KEYS[name]:
             path = f"{label}.{key}" if label else str(key)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import POSITIVE, Rule, array, contact_angle, items, number, refusal, vector
+from ..checks import POSITIVE, Rule, array, contact_angle, items, listed, number, refusal, vector
 from ..errors import SceneError
 from .nearest import Nearest, closer, nearest_of_balls
 
@@ -39,7 +39,7 @@ class SphereLattice:
     base: float | None = None
 
     def __post_init__(self) -> None:
-        number("substrate.spacing", self.spacing, least=2.0 * self.radius)
+        number("substrate.spacing", self.spacing, least=2.0 * self.radius, unit="twice the radius")
 
     @property
     def scale(self) -> float:
@@ -117,7 +117,7 @@ HALF = 1 << 20
 
 def _each(field: str, value: Any, *, rule: Rule) -> Array:
     """() or (n,) numbers that keep a rule."""
-    if not np.ndim(value):
+    if not listed(value):
         return np.asarray(rule(field, value))
     numbers = array(field, value, shape=(None,))
     kinds, first = np.unique(numbers, return_index=True)

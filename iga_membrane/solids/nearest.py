@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array, Index, Mask
+from ..checks import ndarray
 
 
 @dataclass(frozen=True, eq=False)
-@checked()
+@checked(normal=partial(ndarray, shape=(3,)), ridge=partial(ndarray, shape=(3,)))
 class Nearest:
     """Nearest surface of a solid at points (...).
 

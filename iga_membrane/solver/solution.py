@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import items, mapping, real
+from ..checks import integer, items, mapping, real
 from ..scenes.scene import Scene
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
@@ -28,6 +28,7 @@ from .status import Status
 @dataclass(frozen=True, eq=False)
 @checked(
     measures=mapping,
+    unknowns=partial(integer, least=0),
     multipliers=mapping,
     lambda_min=real,
     hold_force=partial(items, each=real, count=3),

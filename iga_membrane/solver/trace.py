@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import path_values
+from ..checks import called, path_values
 from ..errors import SceneError, SolveError, StateError
 from ..scenes.scene import Ramp, Scene
 from ..tables import column, dataframe, dataset
@@ -121,7 +121,7 @@ def trace(
     SolveError
     """
     asked = tuple(values)
-    ramp = Ramp(parameter, asked, scene_at, asked=True)
+    ramp = Ramp(parameter, asked, lambda value: called(scene_at, value), asked=True)
     options = SolverOptions() if options is None else options
     options.check_folder()
     found = walk(ramp, options, report)

@@ -16,14 +16,21 @@ from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import POSITIVE, Rule, either, function, integer, items, refusal, words
+from ..checks import POSITIVE, Rule, array, called, either, function, integer, items, refusal, words
 from ..errors import SceneError
 from .bernstein import bernstein, extraction
 from .knots import DEGREE, ELEMENTS, check_knots, greville, increasing, open_knots
 
 
 @dataclass(frozen=True, eq=False)
-@checked()
+@checked(
+    degree=DEGREE,
+    breaks=increasing,
+    operators=partial(array, shape=(None, None, None)),
+    abscissae=partial(array, shape=(None,)),
+    continuity=partial(integer, least=-1, most=31),
+    knots=partial(array, shape=(None,)),
+)
 class Basis:
     """Piecewise polynomial basis.
 
@@ -49,6 +56,23 @@ class Basis:
     periodic: bool = False
     knots: Array | None = field(default=None, repr=False)
     joints: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        """One operator and one set of functions for each element."""
+        local, elements = self.degree + 1, len(self.breaks) - 1
+        shapes = {"operators": (elements, local, local), "functions": (elements, local)}
+        for name, shape in shapes.items():
+            given = np.shape(getattr(self, name))
+            if given != shape:
+                raise SceneError(
+                    f"{name}: shape {given} given, {shape} expected for {elements} elements "
+                    f"(breaks) of degree {self.degree}"
+                )
+        if not 0 <= self.functions.min() <= self.functions.max() < len(self.abscissae):
+            raise SceneError(
+                f"functions: numbers from {self.functions.min()} to {self.functions.max()} given, "
+                f"but {len(self.abscissae)} abscissae: one for each function is needed"
+            )
 
     @property
     def smooth(self) -> bool:
@@ -143,8 +167,9 @@ def bspline_basis(knots: ArrayLike, degree: int, *, continuity: int = 1) -> Basi
     """
     if degree < 1 or degree <= continuity:
         raise SceneError(
-            f"degree {degree} is not C{continuity}: C{continuity} needed, so degree >= "
-            f"{continuity + 1} (got {degree}); curvature and contact lines need C1"
+            f"degree = {degree}, continuity = {continuity}: degree {degree} is not C{continuity}: "
+            f"C{continuity} needed, so degree >= {continuity + 1}; curvature and contact lines "
+            "need C1"
         )
     t = check_knots(knots, degree, continuity)
     breaks, counts = np.unique(t, return_counts=True)
@@ -302,7 +327,7 @@ def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int])
     name = getattr(kind, "__name__", type(kind).__name__)
     if joints:
         raise SceneError(f'discretization.space = {name}: has no joints; take "bspline" here')
-    basis = kind(elements, degree)
+    basis = called(kind, elements, degree)
     if not isinstance(basis, Basis):
         raise SceneError(
             f"discretization.space = {name}: {name}({elements}, {degree}) must return a Basis, got "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import Rule, choice, words
+from ..checks import Rule, choice, integer, ndarray, words
 from ..errors import SceneError
 from .basis import Basis
 from .quadrature import gauss
@@ -23,7 +23,13 @@ Rows = dict[tuple[int, int], Array]
 
 
 @dataclass(frozen=True, eq=False)
-@checked()
+@checked(
+    functions=partial(ndarray, kinds="iu", shape=(None, None)),
+    count=partial(integer, least=1),
+    weights=partial(ndarray, shape=(None, None)),
+    combine=partial(ndarray, shape=(None, None, None)),
+    pole=partial(integer, least=0, most=1),
+)
 class Space:
     """Functions of two parameters ``(xi1, xi2)``.
 

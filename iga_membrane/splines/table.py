@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array, Index
+from ..checks import ndarray
 
 
 @dataclass(frozen=True, eq=False)
-@checked()
+@checked(
+    functions=partial(ndarray, kinds="iu", shape=(None, None)),
+    **dict.fromkeys(("values", "d1", "d2"), partial(ndarray, shape=(None, None, None))),
+    weights=partial(ndarray, shape=(None, None)),
+    parameters=partial(ndarray, shape=(None, None, 2)),
+    second=partial(ndarray, shape=(None, None, None, None)),
+)
 class Table:
     """Functions of a space at the quadrature points of some elements.
 

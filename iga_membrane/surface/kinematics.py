@@ -7,16 +7,21 @@ Axis order everywhere (..., direction, component); Greek indices of the paper ar
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
+from ..checks import ndarray
 
 
 @dataclass(frozen=True, eq=False)
-@checked()
+@checked(
+    position=partial(ndarray, shape=(3,)),
+    tangents=partial(ndarray, shape=(2, 3)),
+    second=partial(ndarray, shape=(2, 2, 3)),
+)
 class Kinematics:
     """Position and derivatives of a surface at any set of points; the rest follows on demand.
 

@@ -9,13 +9,14 @@ same table: points that share an unknown, points without one, directions in a pl
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arguments import checked
 from ..arrays import Array, Index
+from ..checks import array, integer, ndarray
 from ..errors import GeometryError
 from ..splines import Space, net_of
 from ..splines.space import EDGES
@@ -25,7 +26,11 @@ from .surface import Surface
 
 
 @dataclass(frozen=True, eq=False)
-@checked()
+@checked(
+    directions=partial(ndarray, shape=(None, 3)),
+    size=partial(integer, least=0),
+    shifts=partial(ndarray, shape=(None, 3)),
+)
 class Motion:
     """Linear map from unknowns to displacements of control points: rows (point, direction,
     unknown), and shifts in which many points take part.
@@ -80,7 +85,7 @@ class Spines:
     extra : arrays (count,) of the rows of each control point after its first, or the spare row.
     """
 
-    @checked()
+    @checked(directions=partial(array, shape=(None, 3)))
     def __init__(
         self,
         surface: Surface,

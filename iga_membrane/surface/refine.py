@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import integer
+from ..checks import array, integer
 from ..errors import SceneError
 from ..splines import Basis, bspline_basis, insertion_matrix, tensor_space
 from .surface import Surface
 
 
-@checked()
+@checked(new1=partial(array, shape=(None,)), new2=partial(array, shape=(None,)))
 def refined(surface: Surface, new1: ArrayLike = (), new2: ArrayLike = ()) -> Surface:
     """Insert knots in the two directions (Boehm); the surface stays the same.
 

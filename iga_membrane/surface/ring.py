@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import answer_of, either, function, integer, number, words
+from ..checks import answer_of, called, either, function, integer, number, words
 from ..errors import SceneError
 from ..splines import (
     DEGREE,
@@ -170,7 +170,7 @@ def axisymmetric(space: Space, profile: Callable[[Array], tuple[Array, Array, Ar
     if not space.bases[0].periodic:
         raise SceneError("space: a surface of revolution needs a ring, build it by ring_space")
     points, matrix = meridian_interpolation(space)
-    r, z, slope = answer_of(profile, profile(points), ("r", "z", "dr/dt"), points.shape)
+    r, z, slope = answer_of(profile, called(profile, points), ("r", "z", "dr/dt"), points.shape)
     if space.pole == 1:
         r[-2], z[-2] = slope[-2], 0.0
     r, z = np.linalg.solve(matrix, np.stack([r, z], axis=1)).T

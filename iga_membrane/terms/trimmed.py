@@ -19,11 +19,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array, Index
+from ..checks import array
 from ..solids import Nearest, Solid, SphereLattice, Spheres
 from ..splines import LineTable
 from ..splines.quadrature import gauss
@@ -37,7 +39,7 @@ ARC = 12
 
 
 @dataclass(frozen=True, eq=False)
-@checked(gamma="liquid.surface_tension")
+@checked(gamma="liquid.surface_tension", toward=partial(array, shape=(None, 3)))
 class TrimmedContactLine(Term):
     """Energy ``-gamma cos(theta)`` of the solid's wetted surface, the membrane passing through it.
 

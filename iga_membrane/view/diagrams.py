@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from functools import partial
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
+from ..checks import either, items, text
 from ..errors import SceneError
 from .figure import figure, write_figure
 
@@ -36,7 +38,7 @@ class Table(Protocol):
         """(rows,) numbers."""
 
 
-@checked()
+@checked(y=either(text, partial(items, each=text, least=1)))
 def plot_curves(
     table: Table,
     path: str | os.PathLike[str],

@@ -1,17 +1,21 @@
 """Every argument of every public name, replaced by each kind of wrong value: a typed error that
 names it, at once, or a result where the value is right."""
 
+import contextlib
+import dataclasses
 import functools
 import inspect
+import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers import solved
+from helpers import droplet_file, solved
 
 import iga_membrane as iga
 import iga_membrane.terms as terms
+from iga_membrane import checks
 
 TYPED = (iga.SceneError, iga.GeometryError, iga.OutputError, iga.StateError)
 """Errors of ours that refuse an argument."""
@@ -34,13 +38,35 @@ def ring():
 
 def fields_of(made):
     """The arguments of a record that the package makes itself."""
-    import dataclasses
-
     return {f.name: getattr(made, f.name) for f in dataclasses.fields(made) if f.init}
 
 
 def angled(angle):
     return iga.sessile_droplet(iga.Plane(angle), volume=1.0)
+
+
+def weighted(pull):
+    return iga.sessile_droplet(PLANE, volume=1.0, gravity=[0.0, 0.0, pull])
+
+
+@functools.cache
+def files():
+    """A state file and a scene file."""
+    folder = Path(tempfile.mkdtemp())
+    drop().save(folder / "state.npz")
+    (folder / "scene.toml").write_text(droplet_file(90.0))
+    return folder
+
+
+def height(solution):
+    return solution.measures["height"]
+
+
+@functools.cache
+def pulled():
+    """A sheet whose particle may move up and down."""
+    ball = iga.Sphere(90.0, 1.0, (0.0, 0.0, -0.2), motion="vertical")
+    return iga.liquid_sheet(ball, size=5.0, boundary="circle")
 
 
 def meshed(mesh):
@@ -86,7 +112,7 @@ GIVEN = {
     "contact_line": lambda: {"surface": drop().surface},
     "contact_lines": lambda: {"solution": drop()},
     "convergence_study": lambda: {"scene_of": meshed, "exact": {"height": 1.0}},
-    "critical_value": lambda: {"scene_at": angled, "measure": drop, "low": 60.0, "high": 90.0},
+    "critical_value": lambda: {"scene_at": weighted, "measure": height, "low": -2.0, "high": 1e9},
     "cylinder": lambda: {"radius": 1.0, "height": 1.0},
     "disc": lambda: {"radius": 1.0},
     "drop_space": lambda: {"kind": "bspline", "degree": 3, "elements": 4},
@@ -96,8 +122,8 @@ GIVEN = {
     "lagrange_basis": lambda: {"breaks": [0.0, 0.5, 1.0], "degree": 2},
     "line_basis": lambda: {"kind": "bspline", "elements": 4, "degree": 3},
     "liquid_sheet": lambda: {"particle": BALL, "size": 5.0},
-    "load": lambda: {"path": "state.npz"},
-    "load_scene": lambda: {"path": "scene.toml"},
+    "load": lambda: {"path": files() / "state.npz"},
+    "load_scene": lambda: {"path": files() / "scene.toml"},
     "open_knots": lambda: {"breaks": [0.0, 0.5, 1.0], "degree": 2},
     "periodic_basis": lambda: {"elements": 6, "degree": 3},
     "plot": lambda: {"solution": drop(), "path": "drop.png"},
@@ -105,7 +131,7 @@ GIVEN = {
     "plot_phases": lambda: {"table": Columns(), "path": "p.png", "x": "x", "y": "y", "of": "of"},
     "plot_section": lambda: {"solution": drop(), "path": "drop.png"},
     "plot_side": lambda: {"solution": drop(), "path": "drop.png"},
-    "pull_off": lambda: {"scene": drop().scene},
+    "pull_off": lambda: {"scene": pulled()},
     "read_scene": lambda: {"data": {"scene": "sessile_droplet", "liquid": {"volume": 1.0},
                                     "substrate": {"contact_angle": 90.0}}},
     "refined": lambda: {"surface": iga.sheet(1.0, elements=3), "new1": [0.5]},
@@ -234,14 +260,159 @@ WRONG = {
     "objects": np.array([None, "x", 1.0], object),
     "object": object(),
 }
-WRONG_KIND = {"complex", "bytes", "object", "10**400", "-10**5000", "objects", "ragged"}
-"""Values that no argument takes."""
-CASES = [
-    (name, parameter)
-    for name in sorted(GIVEN)
-    for parameter, kind in inspect.signature(PUBLIC[name]).parameters.items()
-    if kind.kind not in (kind.VAR_KEYWORD, kind.VAR_POSITIONAL)
-]
+TAKES = {
+    "five, half": """
+        Contact.depth Contact.adhesion Contact.compliance Grading.first
+        Gravity.density_of_liquid Liquid.surface_tension Liquid.density NormalLineLoad.gamma
+        Plane.contact_angle PlaneContactLine.gamma PlaneContactLine.contact_angle Ring.radius
+        Scale.length Scale.tension Scene.liquid_density SolverOptions.max_cpu_s
+        SolverOptions.max_memory_gb Sphere.contact_angle Sphere.radius Sphere.density
+        SphereContactLine.gamma SphereLattice.contact_angle SphereLattice.spacing
+        Spheres.contact_angle Spheres.radii Stabilization.mu SurfaceTension.gamma
+        TrimmedContactLine.gamma Volume.value WholeMembrane.stabilization WholeMembrane.penalty
+        WholeMembrane.penetration_tolerance animate.seconds asperity_cell.pressure
+        asperity_cell.penetration_tolerance cap.radius cap.contact_angle cylinder.radius
+        cylinder.height disc.radius drop_space.angle film_between_rings.radius
+        film_between_rings.half_height liquid_sheet.size liquid_sheet.gravity
+        periodic_basis.length plot.zoom ring_basis.length ring_space.angle
+        self_cleaning.friction sessile_droplet.volume sessile_droplet.gravity
+        sessile_droplet.penetration_tolerance sheet.size sphere.radius
+    """,
+    "None": """
+        Contact.ring Discretization.degree Discretization.model Kinematics.second Scene.scale
+        Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge
+        Scene.free_particles Scene.substrate Sliding.solid Solution.audit Solution.bracket
+        Solution.progress SolverOptions.start SolverOptions.checkpoint Space.pole Space.shared
+        Space.leaders Spines.directions Table.second Table.kinds TrimmedContactLine.toward
+        asperity_cell.liquid asperity_cell.discretization contact_line.solid
+        convergence_study.model convergence_study.options critical_value.options drop_space.kink
+        film_between_rings.liquid film_between_rings.discretization liquid_sheet.particle
+        liquid_sheet.liquid liquid_sheet.discretization liquid_sheet.start liquid_sheet.membrane
+        plot.focus plot.limits plot_phases.curve pull_off.options ring_space.kink
+        self_cleaning.options sessile_droplet.liquid sessile_droplet.discretization
+        sessile_droplet.start sessile_droplet.penalty sessile_droplet.membrane solve.options
+        sweep.executor sweep.options tensor_space.weights trace.options
+    """,
+    "five": """
+        Motion.size Solution.unknowns SolverOptions.max_iterations Space.count Sweep.computed
+        WholeMembrane.load_steps asperity_cell.size check_derivatives.seed
+        convergence_study.repeats drop_space.degree drop_space.elements drop_space.sectors
+        elevated.by line_basis.elements line_basis.degree open_knots.degree
+        periodic_basis.elements periodic_basis.degree plot.resolution plot_section.resolution
+        plot_side.resolution ring_basis.elements ring_basis.degree ring_space.degree
+        ring_space.elements ring_space.sectors sheet.elements sheet.degree
+    """,
+    "list": """
+        Basis.joints Path.values Path.solutions PullOff.displacements PullOff.forces
+        PullOff.solutions Scene.supports Scene.particles SelfCleaning.verdicts Solution.forces
+        Solution.iterations Solution.load_steps Spines.supports Study.runs Sweep.records
+        line_basis.joints load.also periodic_basis.joints refined.new1 refined.new2
+        ring_basis.joints sessile_droplet.particles
+    """,
+    "text": """
+        Centroid.axis Path.parameter Scene.hold Scene.kind Solution.message Symmetry.axis
+        animate.path plot_curves.path plot_curves.x plot_phases.path plot_phases.x plot_phases.y
+        plot_phases.of plot_section.path plot_side.path sessile_droplet.hold trace.parameter
+    """,
+    "truth": """
+        Basis.periodic Crossing.rising PlaneContactLine.covered SolverOptions.audit
+        SolverOptions.follow_instability SphereContactLine.covered Stabilization.projected
+        Sweep.mixed WholeMembrane.projected lagrange_basis.periodic liquid_sheet.liquid_weight
+        plot.traction plot.forces ring_space.corners sweep.allow_mixed
+    """,
+    "1e308, 1e-300, -1, nan, inf, five, half": """
+        BodyDensity.constant Derivatives.gradient Derivatives.hessian PullOff.force PullOff.at
+        Verdict.normal Verdict.tangential Verdict.weight Verdict.slide
+    """,
+    "class": """
+        Discretization.space critical_value.measure pull_off.report solve.report sweep.scene_of
+        trace.report
+    """,
+    "None, five": """
+        Discretization.elements SolverOptions.quadrature contact_line.points drop_space.around
+        ring_space.around sweep.workers
+    """,
+    "cube": """
+        Space.combine Table.values Table.d1 Table.d2 Table.weights Table.parameters
+    """,
+    "table": """
+        Scene.description Solution.measures Solution.multipliers Solution.contact
+        Solution.cpu_seconds
+    """,
+    "1e-300, -1, five, half": """
+        Centroid.target Pressure.pressure Ring.pressure Volume.ends
+    """,
+    "None, five, half": """
+        Contact.penalty asperity_cell.penalty film_between_rings.volume sweep.timeout
+    """,
+    "-1, five, half": """
+        Crossing.value critical_value.low critical_value.high plot_side.azimuth
+    """,
+    "list, words": """
+        Scene.warnings Solution.warnings Study.measures Sweep.parameters
+    """,
+    "None, text": """
+        Solution.kind plot.path plot_curves.by sweep.out
+    """,
+    "None, -1, five, half": """
+        Spheres.base film_between_rings.pressure liquid_sheet.pressure liquid_sheet.volume
+    """,
+    "cube, not a number": """
+        Motion.share Nearest.gap Nearest.bend
+    """,
+    "not a number": """
+        Kinematics.position Nearest.normal
+    """,
+    "None, function, class": """
+        Scene.otherwise Scene.finer
+    """,
+    "None, 1e308, 1e-300, -1, nan, inf, five, half": """
+        Solution.lambda_min Solution.volume_error
+    """,
+    "half": """
+        SolverOptions.min_load_step critical_value.tolerance
+    """,
+    "None, -1": """
+        SphereLattice.base open_knots.continuity
+    """,
+    "-1, five": """
+        Basis.continuity
+    """,
+    "None, list": """
+        Basis.knots
+    """,
+    "None, not a number": """
+        Nearest.ridge
+    """,
+    "None, class": """
+        Scene.start_from
+    """,
+    "inf, five, half": """
+        Sliding.reach
+    """,
+    "None, -1, five": """
+        Solution.index
+    """,
+    "None, cube, not a number": """
+        Solution.mode
+    """,
+    "None, cube": """
+        Space.weights
+    """,
+    "-1": """
+        bspline_basis.continuity
+    """,
+    "None, half": """
+        plot.opacity
+    """,
+    "text, words": """
+        plot_curves.y
+    """,
+}
+"""Values of WRONG that are right somewhere, and where."""
+RIGHT = {
+    place: set(kinds.split(", ")) for kinds, places in TAKES.items() for place in places.split()
+}
 
 
 class Began(Exception):
@@ -251,20 +422,53 @@ class Began(Exception):
 @pytest.fixture(autouse=True)
 def _no_work(monkeypatch, tmp_path):
     """Nothing is solved, drawn or written in earnest."""
-    monkeypatch.chdir(tmp_path)
 
     def begun(*given, **more):
         raise Began
 
-    from iga_membrane.analysis import sweep
-    from iga_membrane.solver import derivatives, trace
-    from iga_membrane.view import drawing, figure, picture
+    drop()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("iga_membrane.solver.assembly.Assembly.__init__", begun)
+    monkeypatch.setattr("iga_membrane.analysis.job.Job.run", begun)
+    for place in ("picture.pyvista", "picture.trial", "section.figure", "goniometer.figure",
+                  "diagrams.figure", "animation.extent"):  # fmt: skip
+        monkeypatch.setattr(f"iga_membrane.view.{place}", begun)
 
-    solve = importlib.import_module("iga_membrane.solver.solve")
-    monkeypatch.setattr(solve, "Assembly", begun)
-    for module, what in ((trace, "Assembly"),):
-        pass
+
+def accepted(name, parameter, value):
+    """Whether a public name takes a value of one of its arguments; it must refuse the others by a
+    typed error that names the argument."""
+    given = GIVEN[name]() | {parameter: value}
+    before = time.process_time()
+    try:
+        PUBLIC[name](**given)
+    except Began:
+        return True
+    except TYPED as error:
+        said = str(error)
+        place = {"data": "scene"}.get(parameter, parameter)
+        named = (
+            checks.name_of(value) in said
+            or place.strip("s") in said
+            or place.replace("_", " ") in said
+        )
+        assert named or (isinstance(value, str) and said.startswith(f"{value}: ")), said
+        assert len(said) < 1000, said
+        assert time.process_time() - before < 0.5
+        return False
+    return True
 
 
 def test_the_table_has_every_public_name():
     assert set(GIVEN) | NO_ARGUMENTS == set(PUBLIC)
+    assert {place.split(".")[0] for place in RIGHT} <= set(GIVEN)
+
+
+@pytest.mark.parametrize("name", sorted(GIVEN))
+def test_wrong_arguments_are_refused_by_name(name):
+    with contextlib.suppress(Began):
+        PUBLIC[name](**GIVEN[name]())
+    for parameter, kind in inspect.signature(PUBLIC[name]).parameters.items():
+        if kind.kind not in (kind.VAR_KEYWORD, kind.VAR_POSITIONAL):
+            taken = {what for what, value in WRONG.items() if accepted(name, parameter, value)}
+            assert taken == RIGHT.get(f"{name}.{parameter}", set()), parameter
