@@ -192,7 +192,7 @@ def words(*allowed: str) -> Rule:
 
 
 def either(*rules: Rule) -> Rule:
-    """One of several rules; a wrong value is told the first."""
+    """One of several rules; a wrong value is told all of them."""
 
     def rule(field: str, value: Any) -> Any:
         errors = []
@@ -200,8 +200,9 @@ def either(*rules: Rule) -> Rule:
             try:
                 return one(field, value)
             except SceneError as error:
-                errors.append(error)
-        raise errors[0]
+                errors.append(str(error))
+        first, *others = errors
+        raise SceneError(", or ".join([first, *(each.partition(": ")[2] for each in others)]))
 
     return rule
 

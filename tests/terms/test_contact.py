@@ -164,7 +164,7 @@ def test_multipliers_that_hold_the_gap_add_no_energy():
 
 @pytest.mark.parametrize(
     ("values", "said"),
-    [({"penalty": 0.0}, "solver.penalty"), ({"depth": -1.0}, "solver.penetration_tolerance")],
+    [({"penalty": 0.0}, "solver.penalty"), ({"depth": -1.0}, "depth")],
 )
 def test_bad_laws_of_contact_are_refused_by_name(values, said):
     with pytest.raises(iga.SceneError, match=said):
