@@ -59,7 +59,7 @@ def path(spacing: float) -> list[str]:
     rows = [
         f"| {angle:g} | {each.contact['wet_solids']} | {each.contact['wet_fraction']:.3f} | "
         f"{each.measures['height'] - FLAT:.3e} | {each.measures['apparent_angle']:.2f} | "
-        f"{each.measures['cassie_baxter_angle']:.2f} |"
+        f"{each.measures['cassie_baxter_angle'] or np.nan:.2f} |"
         for angle, each in zip(found.values, found.solutions, strict=True)
     ]
     head = "| angle | wet | wetted fraction | height - flat | apparent angle | Cassie-Baxter |"

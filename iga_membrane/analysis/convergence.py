@@ -297,7 +297,8 @@ def _run(
 
 
 def _distance(solution: Solution, name: str, value: float) -> float:
-    return float(abs(solution.measures[name] - value) / (abs(value) or 1.0))
+    found = solution.measures[name]
+    return np.nan if found is None else float(abs(found - value) / (abs(value) or 1.0))
 
 
 def _rate(one: Run, two: Run, measure: str) -> float:

@@ -42,6 +42,9 @@ from .scene import FreeEdge, Ramp, Scene
 from .smooth_foot import rim_radius, with_rim
 from .whole_membrane import WholeMembrane, droplet_with_wetted_part
 
+ROUNDING = 1e-12
+"""Part of gravity along an axis of the scene below which it has none there."""
+
 
 def _acceleration(field: str, value: Any) -> tuple[float, float, float]:
     """A vector, or its size along -z."""
@@ -124,17 +127,19 @@ def sessile_droplet(
         origin, axes = grains[0].center, axes_between(grains)
     else:
         origin, axes = _frame(substrate, free=asked_substrate is None)
+    local = acceleration @ axes
+    # a scene that is turned as a whole leans by rounding
+    local[np.abs(local) <= ROUNDING * np.abs(local).max()] = 0.0
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     if grains or penalty is not None or start is not None:
         contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
     else:
-        local = acceleration @ axes
         pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
         contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
     with np.errstate(over="ignore", invalid="ignore"):
-        bond = liquid.density * (acceleration @ axes) * length**2 / liquid.surface_tension
+        bond = liquid.density * local * length**2 / liquid.surface_tension
     if not (np.isfinite(bond).all() and 0.0 < length**3 < np.inf):
         raise SceneError(
             f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "

@@ -67,8 +67,7 @@ class Foot:
 
 def sector_of(mesh: Mesh, bond: Array) -> Sector:
     """The model asked for, or the smallest that gravity's direction allows."""
-    tiny = 1e-14 * float(np.abs(bond).max())
-    along_x, along_y = (abs(float(b)) > tiny for b in bond[:2])
+    along_x, along_y = (bool(b) for b in bond[:2])
     smallest: Model = "full" if along_y else "half" if along_x else "eighth"
     model = mesh.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):

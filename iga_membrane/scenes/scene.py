@@ -294,6 +294,19 @@ class Scene:
         return self.scale
 
     @property
+    def free(self) -> bool:
+        """Whether the liquid touches nothing but particles, of which one is its substrate."""
+        return self.substrate in self.particles
+
+    @property
+    def up(self) -> Array:
+        """(3,) unit vector along which forces are normal: that of the substrate or of a level rim;
+        of a free droplet against gravity, or without any its frame's z."""
+        pull = np.array(self.acceleration) * self.free
+        size = float(np.linalg.norm(pull))
+        return -pull / size if size else self.units.axes[:, 2]
+
+    @property
     def meridian_grading(self) -> Grading | None:
         """The grading of a ring patch; other patches, and membranes that lie on a solid, keep
         their parametrization."""

@@ -35,11 +35,9 @@ def on_an_area(parts: Question) -> Foot:
             'foot needs "bspline"'
         )
     x, y, _ = (float(b) for b in parts.bond)
-    tiny = 1e-14 * float(np.abs(parts.bond).max())
     local = scale.local_solid(substrate)
-    lateral = (x if abs(x) > tiny else 0.0, y if abs(y) > tiny else 0.0)
     particles = [scale.local_sphere(each) for each in parts.particles]
-    smallest = smallest_model(local, 1.5, lateral, particles)
+    smallest = smallest_model(local, 1.5, (x, y), particles)
     model = parts.asked.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):
         raise SceneError(

@@ -35,14 +35,26 @@ class Plane:
         return np.asarray(n / np.linalg.norm(n))
 
     def axes(self) -> Array:
-        """(3, 3) rotation whose columns are two axes in the plane and its normal."""
+        """(3, 3) rotation whose columns are two axes in the plane and its normal: the world's axes
+        turned by the smallest rotation that takes z to the normal; downwards, about x.
+
+        Notes
+        -----
+        With the horizontal part h of the normal n it is the identity but for ``-h h / (1 + n_z)``
+        in the first two rows and columns, ``-h`` in the third row and n in the third column
+        (Rodrigues' formula).
+        """
         n = self.unit_normal()
-        if n[2] > 1 - 1e-15:
-            return np.eye(3)
-        helper = np.eye(3)[np.argmin(np.abs(n))]
-        first = np.cross(helper, n)
-        first /= np.linalg.norm(first)
-        return np.stack([first, np.cross(n, first), n], axis=1)
+        aside = n[:2]
+        size = float(aside @ aside)
+        if not size:
+            return np.diag([1.0, n[2], n[2]])
+        axes = np.eye(3)
+        # 1 / (1 + n_z), without cancellation near n_z = -1
+        share = 1.0 / (1.0 + n[2]) if n[2] > 0.0 else (1.0 - n[2]) / size
+        axes[:2, :2] -= share * np.outer(aside, aside)
+        axes[2, :2], axes[:, 2] = -aside, n
+        return axes
 
     def gap(self, points: ArrayLike) -> Array:
         """Distance above the plane of points (..., 3); positive in the gas (paper eq. 24)."""

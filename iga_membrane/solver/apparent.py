@@ -55,12 +55,18 @@ def profile(height: float, body: BodyDensity, tension: float) -> Array:
     ).y  # fmt: skip
 
 
-def cassie_baxter_angle(wet: float, projected: float, base: float, contact_angle: float) -> float:
+def cassie_baxter_angle(
+    wet: float, projected: float, base: float, contact_angle: float
+) -> float | None:
     """Cassie and Baxter's angle (degrees): ``cos = (A_wet cos(theta) + A_projected) / A_base - 1``.
 
     Parameters
     ----------
     wet, projected : area of the wet spots, and projected on the base; base : area of the foot.
+
+    Returns
+    -------
+    degrees; None where the right-hand side is no cosine.
     """
     cosine = (wet * np.cos(np.radians(contact_angle)) + projected) / base - 1.0
-    return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+    return float(np.degrees(np.arccos(cosine))) if abs(cosine) <= 1.0 else None

@@ -123,8 +123,8 @@ def conclude(
         kind=kind,
         surface=surface.moved(scale.to_world(surface.points)),
         measures=found,
-        forces=_forces(scene, assembly, surface, multipliers, found),
-        multipliers=_named(assembly, multipliers, scale.pressure, scale.length),
+        forces=_forces(scene, assembly, surface, multipliers),
+        multipliers=_named(scene, assembly, multipliers),
         body=assembly.density(multipliers),
         index=verdict.index if verdict else None,
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
@@ -145,7 +145,7 @@ def conclude(
             "contact": 0.0,
             "solve": total,
         },
-        warnings=_warnings(scene, contact),
+        warnings=_warnings(scene, contact, found),
     )
 
 
@@ -175,16 +175,12 @@ def _examined(
 
 
 def _forces(
-    scene: Scene,
-    assembly: Assembly,
-    surface: Surface,
-    multipliers: Array,
-    found: Mapping[str, float],
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[ParticleForces, ...]:
     """Forces on a sheet's particle, or on those of a droplet."""
     if scene.particles and assembly.trim is not None:
         return forces_on_particles(scene, assembly, surface, multipliers)
-    return particle_forces(scene, assembly, surface, multipliers, found)
+    return particle_forces(scene, assembly, surface, multipliers)
 
 
 def _audited(
@@ -220,26 +216,38 @@ def _hold_force(
     return x, y, z
 
 
-def _named(
-    assembly: Assembly, multipliers: Array, pressure: float, length: float
-) -> dict[str, float]:
-    return {
-        term.name: float(m) * pressure / (length if isinstance(term, Centroid) else 1.0)
-        for term, m in zip(assembly.constraints, multipliers, strict=False)
-    }
+def _named(scene: Scene, assembly: Assembly, multipliers: Array) -> dict[str, float]:
+    """Multipliers of the constraints in the user's units: slopes of the energy, that of weight zero
+    at the world's origin."""
+    scale = scene.units
+    # what it costs to lift a volume from there to the frame's origin
+    lifted = -float(assembly.body.at(scale.to_local(np.zeros(3)))) + assembly.body.constant
+    found = {}
+    for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
+        unit = scale.pressure / (scale.length if isinstance(term, Centroid) else 1.0)
+        moved = lifted if isinstance(term, Volume) else 0.0
+        found[term.name] = (float(multiplier) + moved) * unit
+    return found
 
 
 MANY = 100
 """Wet asperities from which on a droplet is as well in one place as in another."""
 
 
-def _warnings(scene: Scene, contact: Mapping[str, Any]) -> tuple[str, ...]:
+def _warnings(
+    scene: Scene, contact: Mapping[str, Any], found: Mapping[str, Any]
+) -> tuple[str, ...]:
     pinned = [t.axis for t in scene.terms if isinstance(t, Centroid) and t.axis not in scene.hold]
     texts = list(scene.warnings)
     if pinned:
         texts.append(
             f"neutral rigid translations along {', '.join(pinned)} are pinned by holding the "
             "centroid"
+        )
+    if "cassie_baxter_angle" in found and found["cassie_baxter_angle"] is None:
+        texts.append(
+            "cassie_baxter_angle is null: the wet spots are so curved that the cosine of the "
+            "formula of Cassie and Baxter leaves [-1, 1]"
         )
     on_top = isinstance(scene.substrate, (Sphere, SphereLattice, Spheres)) and not scene.hold
     judged = f"that motion is not in the {scene.sector.model} model, whose stability is judged"

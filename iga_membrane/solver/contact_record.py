@@ -24,7 +24,7 @@ def contact_record(
     scene: Scene,
     assembly: Assembly,
     result: NewtonResult,
-    found: Mapping[str, float],
+    found: Mapping[str, Any],
     checked: Audit | None,
 ) -> dict[str, Any]:
     """Contact with the substrate, by the names of the result file."""
@@ -46,7 +46,7 @@ def contact_record(
             pull_on_sphere(scene, assembly, surface, result.multipliers, which).total
             for which in range(max(1, len(sphere_lines(scene))))
         ]
-        support, solids = -float(np.sum(pulls, axis=0)[2]), len(pulls)
+        support, solids = -float(scale.axes @ np.sum(pulls, axis=0) @ scene.up), len(pulls)
     wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
     rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
     alone: dict[str, Any] = {}
@@ -70,11 +70,13 @@ def contact_record(
 def _row(
     scale: Scale, which: int, center: Array, force: Array, wet: float, angle: float
 ) -> dict[str, Any]:
-    """One wet asperity; ``wet`` and ``angle`` in the user's units, the rest in the scene's."""
+    """One wet asperity; ``wet`` and ``angle`` in the user's units, the rest in the scene's. Its
+    ``force`` presses it where it is positive, and pulls it up where it is negative."""
+    pressed = -np.copysign(np.linalg.norm(force), force[2])
     return {
         "index": int(which),
         "center": scale.to_world(center).tolist(),
-        "force": float(np.linalg.norm(force)) * scale.force,
+        "force": float(pressed) * scale.force,
         "force_vector": (scale.axes @ force * scale.force).tolist(),
         "wet_area": float(wet),
         "contact_angle": float(angle),
@@ -100,7 +102,7 @@ def _footing(
     scene: Scene,
     assembly: Assembly,
     result: NewtonResult,
-    found: Mapping[str, float],
+    found: Mapping[str, Any],
     checked: Audit | None,
 ) -> dict[str, Any]:
     """Contact area by area, by the names of the result file."""

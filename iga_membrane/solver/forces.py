@@ -36,6 +36,8 @@ class ParticleForces:
     Attributes
     ----------
     center : (3,) of the particle, where it came to rest if it is free.
+    up : (3,) unit normal of the substrate or of the sheet's level rim; of a free droplet the
+        direction against gravity, or without any from the particle to the droplet or the second.
     weight : (3,) F_G; contact_line : F_CL; hydrostatic : F_H; buoyancy : F_B.
     torque : (3,) about the centre: zero, as the energy does not change when a sphere of one
         contact angle turns.
@@ -44,6 +46,7 @@ class ParticleForces:
     """
 
     center: Array
+    up: Array
     weight: Array
     contact_line: Array
     hydrostatic: Array
@@ -57,9 +60,19 @@ class ParticleForces:
         return self.weight + self.contact_line + self.hydrostatic + self.buoyancy
 
     @property
+    def normal(self) -> float:
+        """Part of F_e along ``up``."""
+        return float(self.effective @ self.up)
+
+    @property
+    def tangential(self) -> float:
+        """Size of the rest of F_e, >= 0."""
+        return float(np.linalg.norm(self.effective - self.normal * self.up))
+
+    @property
     def lifts(self) -> bool:
-        """Whether the liquid pulls the particle up."""
-        return bool(self.effective[2] > 0)
+        """Whether F_e points up."""
+        return self.normal > 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,11 +174,7 @@ def _pull_through(assembly: Assembly, surface: Surface, edge: str) -> Pull:
 
 
 def particle_forces(
-    scene: Scene,
-    assembly: Assembly,
-    surface: Surface,
-    multipliers: Array,
-    measures: Mapping[str, float],
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[ParticleForces, ...]:
     """Forces on the particles on which the membrane ends, of a sheet or a droplet; none where the
     scene has no particle."""
@@ -173,7 +182,7 @@ def particle_forces(
     if scene.kind == "liquid_sheet" and isinstance(scene.substrate, Sphere):
         particles = (scene.substrate,)
     return tuple(
-        _on_particle(scene, assembly, surface, multipliers, measures, particle, which)
+        _on_particle(scene, assembly, surface, multipliers, particle, which)
         for which, particle in enumerate(particles)
     )
 
@@ -183,7 +192,6 @@ def _on_particle(
     assembly: Assembly,
     surface: Surface,
     multipliers: Array,
-    measures: Mapping[str, float],
     particle: Sphere,
     which: int,
 ) -> ParticleForces:
@@ -210,15 +218,17 @@ def _on_particle(
     weight = 4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g
     contact = scale.axes @ (pull.total - pull.pressure) * scale.force
     axis = scale.axes @ np.array(cap.axis)
-    level = -(body.constant + float(cap.apex @ np.array(body.gradient))) * scale.pressure
+    # the paper's pressure is that at the rim
+    level = np.zeros(3) if sheet else cap.apex
     paper = paper_forces(
         particle,
-        measures["pressure"] if sheet else level,
+        -float(body.at(level)) * scale.pressure,
         particle.radius * (1.0 - float(np.cos(cap.polar))),
         *(float(part @ axis) for part in (weight, contact, buoyancy)),
     )
     none, center = np.zeros(3), np.array(particle.center)
-    return ParticleForces(center, weight, contact, pressed - buoyancy, buoyancy, none, paper)
+    rest = pressed - buoyancy
+    return ParticleForces(center, scene.up, weight, contact, rest, buoyancy, none, paper)
 
 
 def paper_forces(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -24,14 +24,18 @@ from ..terms import variations as vary
 from .apparent import apparent_angle, cassie_baxter_angle
 from .assembly import Assembly
 from .contact_line import ContactLine, contact_line
+from .farthest import highest, widest
 from .footing import Footing, footing
 from .forces import line_on_sphere, pull_on_sphere
 from .wetted_cap import WettedCap
 
+UP = np.array([0.0, 0.0, 1.0])
+"""Axis of the scene's frame along which heights are told."""
+
 
 def measures(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Measures of a state for the full body, in the user's units.
 
     Parameters
@@ -40,14 +44,14 @@ def measures(
 
     Notes
     -----
-    ``pressure`` is that at the origin of the scene's frame: for a droplet a point of the plane.
+    ``pressure`` is that at the world's origin, ``dE/dV``; None where a measure has no value.
     """
     scale = scene.units
-    values = energies(scene, assembly, surface)
+    values: dict[str, Any] = energies(scene, assembly, surface)
     if scene.line_inside is not None:
         values |= _surface_energies(scene, assembly, surface, values)
     body = assembly.density(multipliers)
-    values["pressure"] = -body.constant * scale.pressure
+    values["pressure"] = -float(body.at(scale.to_local(np.zeros(3)))) * scale.pressure
     ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
     on_area = assembly.contact is not None and scene.line_inside is None
     values["volume"] = volume(assembly, surface) * scale.length**3 + ends
@@ -65,7 +69,14 @@ def measures(
     elif scene.kind == "liquid_sheet":
         values["V_liq"] = values.pop("volume") - ends + _under_hole(scene, assembly, surface)
         values |= _sheet(scene, assembly, surface, multipliers)
-    return {name: float(value) for name, value in values.items()}
+    return {name: None if value is None else float(value) for name, value in values.items()}
+
+
+def height_of(scene: Scene, place: Array) -> float:
+    """Height of a place (3,) of the scene's frame: above the substrate's plane z = 0; of a free
+    droplet above the world's."""
+    scale = scene.units
+    return float(scale.to_world(place)[2] if scene.free else place[2] * scale.length)
 
 
 def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, float]:
@@ -134,7 +145,7 @@ def _on_solids(
     surface: Surface,
     body: BodyDensity,
     values: dict[str, float],
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """A drop whose membrane goes on over its foot: it lies on solids or passes through them."""
     scale, found = scene.units, footing(scene, assembly, surface, body)
     wet = float(found.areas.sum()) * scale.length**2
@@ -142,10 +153,10 @@ def _on_solids(
     lying = wet if assembly.trim is None else 0.0
     if assembly.trim is None:
         known = values["A_wet"]
-    top = _farthest(surface, lambda x: x[..., 2])
+    top = highest(surface, UP)
     base = base_area(scene, found) + known / scale.length**2
     foot = float(np.sqrt(base / np.pi))
-    angles = {}
+    angles: dict[str, Any] = {}
     rough = isinstance(scene.substrate, (SphereLattice, Spheres))
     if rough and base > 0:
         height = float(top[2])
@@ -164,8 +175,8 @@ def _on_solids(
         "A_wet": wet + known,
         "height": float(top[2]) * scale.length,
         "equator_radius": _width(surface) * scale.length,
-        "p_apex": -(body.constant + float(np.dot(body.gradient, top))) * scale.pressure,
-        "p_base": -body.constant * scale.pressure,
+        "p_apex": -float(body.at(top)) * scale.pressure,
+        "p_base": -float(body.at(np.zeros(3))) * scale.pressure,
     }
 
 
@@ -235,7 +246,7 @@ def _width(surface: Surface) -> float:
     """Largest distance of the membrane from the vertical axis through its middle."""
     x = surface.grid(33, 33, 1).position[..., :2]
     middle = 0.5 * (x.max(axis=(0, 1)) + x.min(axis=(0, 1)))
-    point = _farthest(surface, lambda x: np.linalg.norm(x[..., :2] - middle, axis=-1))
+    point = widest(surface, middle)
     return float(np.linalg.norm(point[:2] - middle))
 
 
@@ -243,34 +254,39 @@ def _droplet(
     scene: Scene, surface: Surface, wet: float, body: BodyDensity, scale: Scale
 ) -> dict[str, float]:
     """Heights, radii and angle of a drop on a plane or on a sphere."""
-    pole = surface.space.pole is not None and scene.sector.model in ("quarter", "eighth")
-    apex = surface.net[0, -1] if pole else _farthest(surface, lambda x: x[..., 2])
-    solid = sphere_of(scene)
+    apex, solid = _apex(scene, surface), sphere_of(scene)
     line = contact_line(surface, scene.line_inside or "xi2=0", solid=solid)
     length = float(line.arc.sum())
-
-    def pressure(z: float) -> float:
-        return -(body.constant + body.gradient[2] * z) * scale.pressure
-
     values = {
-        "height": float(apex[2]) * scale.length,
+        "height": height_of(scene, apex),
         "equator_radius": _equator(surface, line) * scale.length,
-        "p_apex": -(body.constant + float(np.dot(body.gradient, apex))) * scale.pressure,
+        "p_apex": -float(body.at(apex)) * scale.pressure,
         "contact_angle_measured": float(np.degrees(line.angle @ line.arc / length)),
     }
     if solid is None:
-        return values | {"contact_radius": float(np.sqrt(wet / np.pi)), "p_base": pressure(0.0)}
+        base = -float(body.at(np.zeros(3))) * scale.pressure
+        return values | {"contact_radius": float(np.sqrt(wet / np.pi)), "p_base": base}
     # the wetted cap's area gives its mean polar angle: 1 - cos = A / (2 pi r^2)
     share = wet / scale.length**2 / (2.0 * np.pi * solid.radius**2)
     polar = 2.0 * np.arcsin(np.sqrt(0.5 * share))
-    depth = -solid.radius * share
+    top = np.array(solid.center) + [0.0, 0.0, solid.radius]
+    level = top - [0.0, 0.0, solid.radius * share]
     return values | {
         "alpha_deg": float(np.degrees(polar)),
         "contact_radius": solid.radius * float(np.sin(polar)) * scale.length,
-        "z_contact": depth * scale.length,
-        "p_contact": pressure(depth),
-        "p_top": pressure(0.0),
+        "z_contact": height_of(scene, level),
+        "p_contact": -float(body.at(level)) * scale.pressure,
+        "p_top": -float(body.at(top)) * scale.pressure,
     }
+
+
+def _apex(scene: Scene, surface: Surface) -> Array:
+    """The pole of a droplet; of one between two particles its highest point."""
+    if scene.free and len(scene.particles) > 1:
+        return highest(surface, scene.units.axes[2])
+    if surface.space.pole is not None and scene.sector.model in ("quarter", "eighth"):
+        return np.asarray(surface.net[0, -1])
+    return highest(surface, UP)
 
 
 def _sheet(
@@ -279,7 +295,9 @@ def _sheet(
     """Contact on the particle, as means along the line, and the vertical forces on it."""
     scale, solid = scene.units, sphere_of(scene)
     if solid is None:
-        return {"sag": -float(_farthest(surface, lambda x: -x[..., 2])[2]) * scale.length}
+        # a patch closed by its pole, or an open square
+        middle = [0.0, 1.0] if surface.space.pole is not None else [0.5, 0.5]
+        return {"sag": -float(surface.at(middle, 1).position[2]) * scale.length}
     forces = pull_on_sphere(scene, assembly, surface, multipliers)
     line = line_on_sphere(scene, assembly, surface)
     length = float(line.arc.sum())
@@ -367,36 +385,5 @@ def _under_rings(surface: Surface) -> float:
 def _equator(surface: Surface, line: ContactLine) -> float:
     """Largest distance from the axis through the middle of the contact line."""
     middle = line.arc @ line.position[:, :2] / line.arc.sum()
-    point = _farthest(surface, lambda x: np.linalg.norm(x[..., :2] - middle, axis=-1))
+    point = widest(surface, middle)
     return float(np.linalg.norm(point[:2] - middle))
-
-
-def _farthest(surface: Surface, measure: Callable[[Array], Array]) -> Array:
-    """Point of the surface with the largest measure, by zooming in on the best of a few."""
-    ring, meridian = surface.space.bases
-    first = np.array([ring.breaks[0], meridian.breaks[0]])
-    last = np.array([ring.breaks[-1], meridian.breaks[-1]])
-    axes = [np.linspace(a, b, n) for a, b, n in zip(first, last, (9, 41), strict=True)]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-    values = measure(surface.at(grid, 1).position)
-    # the corners of a pillow are one point
-    middle = grid[np.argsort(-values)[:CORNERS], None]
-    reach = np.array([axis[1] - axis[0] for axis in axes])
-    best, most = np.zeros(3), -np.inf
-    unit = np.stack(np.meshgrid(*(np.linspace(0, 1, n) for n in ZOOM), indexing="ij"), axis=-1)
-    for _ in range(8):
-        low, high = np.maximum(middle - reach, first), np.minimum(middle + reach, last)
-        xi = low + (high - low) * unit.reshape(-1, 2)
-        x = surface.at(xi, 1).position
-        values = measure(x)
-        k = np.unravel_index(values.argmax(), values.shape)
-        if values[k] >= most:
-            best, most = x[k], values[k]
-        middle = np.take_along_axis(xi, values.argmax(axis=1)[:, None, None], axis=1)
-        reach = 1.01 * (high - low) / (np.array(ZOOM) - 1.0)
-    return best
-
-
-CORNERS = 4
-ZOOM = (5, 11)
-"""Points along both parameters that each start is looked at with."""

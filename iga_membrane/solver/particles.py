@@ -48,7 +48,7 @@ def forces_on_particles(
 
     pressed = spots.vectors(np.stack([pushed(k) for k in range(3)], axis=1))
     caps = spots.total(spots.cap(over_cone))
-    unit, g = scale.force, np.array(scene.acceleration)
+    unit, up, g = scale.force, scene.up, np.array(scene.acceleration)
     order = trim.term.particle(found.which)
     result = []
     for k, particle in enumerate(scene.particles):
@@ -56,7 +56,7 @@ def forces_on_particles(
         weight = 4.0 / 3.0 * np.pi * particle.radius**3 * particle.density * g
         none = np.zeros(3)
         if k not in order:
-            result.append(ParticleForces(center, weight, none, none, none, none, {}))
+            result.append(ParticleForces(center, up, weight, none, none, none, none, {}))
             continue
         i = int(np.flatnonzero(order == k)[0])
         buoyancy = -scene.liquid_density * g * caps[i] * scale.length**3
@@ -64,12 +64,12 @@ def forces_on_particles(
         contact = scale.axes @ (found.forces[i] - pressed[i]) * unit
         axis = scale.axes @ trim.term.axis(found.which[i : i + 1])[0]
         height = found.radii[i] * (1.0 - np.cos(found.polar[i])) * scale.length
-        level = -(body.constant + float(middle[i] @ slope)) * scale.pressure
+        level = -float(body.at(middle[i])) * scale.pressure
         parts = (float(part @ axis) for part in (weight, contact, buoyancy))
         paper = paper_forces(particle, level, height, *parts)
         result.append(
             ParticleForces(
-                center, weight, contact, pressure - buoyancy, buoyancy, np.zeros(3), paper
+                center, up, weight, contact, pressure - buoyancy, buoyancy, np.zeros(3), paper
             )
         )
     return tuple(result)

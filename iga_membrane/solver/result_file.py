@@ -80,7 +80,7 @@ def _step(step: LoadStep | None) -> dict[str, Any] | None:
 
 
 def _forces(found: ParticleForces) -> dict[str, Any]:
-    """Force vectors of a particle; normal and tangential to the level rim or substrate."""
+    """Force vectors of a particle and their parts."""
     parts = {
         "F_G": found.weight,
         "F_CL": found.contact_line,
@@ -92,8 +92,8 @@ def _forces(found: ParticleForces) -> dict[str, Any]:
     vectors: dict[str, Any] = {name: value.tolist() for name, value in parts.items()}
     return vectors | {
         "center": found.center.tolist(),
-        "normal": float(found.effective[2]),
-        "tangential": float(np.hypot(*found.effective[:2])),
+        "normal": found.normal,
+        "tangential": found.tangential,
         "lifts": found.lifts,
         "paper": dict(found.paper),
     }

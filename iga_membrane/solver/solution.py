@@ -43,7 +43,8 @@ class Solution:
     scene : what was asked.
     status : how the solve ended; message : one sentence with cause and remedy.
     surface : the state, in world coordinates and the user's units.
-    measures : energies, areas, heights, pressures, by the names of the result file.
+    measures : energies, areas, heights, pressures, by the names of the result file; None where a
+        formula has no value, of which a warning tells.
     multipliers : of the constraints, by name, in the user's units.
     body : energy per volume of the Lagrangian in local, dimensionless units: minus the pressure.
     index : negative eigenvalues; lambda_min : smallest one (tension over squared length). After a
@@ -69,7 +70,7 @@ class Solution:
     status: Status
     message: str
     surface: Surface = field(repr=False)
-    measures: Mapping[str, float] = field(repr=False)
+    measures: Mapping[str, Any] = field(repr=False)
     multipliers: Mapping[str, float] = field(repr=False)
     body: BodyDensity = field(repr=False)
     index: int | None
@@ -176,7 +177,10 @@ class Solution:
     def summary(self) -> str:
         """Status, measures, effort, in a few lines."""
         lines = [f"{self.status.name}: {self.message}"]
-        lines += [f"  {name:<24}{value: .10g}" for name, value in self.measures.items()]
+        lines += [
+            f"  {name:<24} n/a" if value is None else f"  {name:<24}{value: .10g}"
+            for name, value in self.measures.items()
+        ]
         numbers = ", ".join(
             f"{name.replace('_', ' ')} {value:.6g}" for name, value in self.dimensionless.items()
         )

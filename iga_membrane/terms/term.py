@@ -177,6 +177,10 @@ class BodyDensity:
     constant: float = 0.0
     gradient: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    def at(self, points: Array) -> Array:
+        """(...) at points (..., 3)."""
+        return np.asarray(self.constant + points @ np.array(self.gradient))
+
     def __add__(self, other: BodyDensity) -> BodyDensity:
         x, y, z = (a + b for a, b in zip(self.gradient, other.gradient, strict=True))
         return BodyDensity(self.constant + other.constant, (x, y, z))

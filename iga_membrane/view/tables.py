@@ -89,8 +89,9 @@ def field_dataset(solution: Solution, resolution: int) -> Any:
     )
 
 
-def _plain(measures: Mapping[str, float]) -> dict[str, float]:
-    return {name: float(value) for name, value in measures.items()}
+def _plain(measures: Mapping[str, float | None]) -> dict[str, float]:
+    """Numbers, NaN where there is none."""
+    return {name: np.nan if value is None else value for name, value in measures.items()}
 
 
 def _xyz(name: str, vector: Iterable[float]) -> dict[str, float]:
