@@ -6,24 +6,37 @@ import argparse
 import logging
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import process_time
-from typing import Any
+from typing import Any, TypeVar
 
 from . import __version__
 from .errors import GeometryError, OutputError, SceneError, StateError
-from .files import check_folder, previous
+from .files import check_folder
+from .output_folder import (
+    PICTURE,
+    RESULT,
+    STATE,
+    STATE_BEFORE,
+    SURFACE,
+    TABLES,
+    output_folder,
+    remove,
+    remove_results,
+)
 from .progress import bar, iterations
 from .progress import log as progress_log
-from .scenes.scene_file import load_scene
+from .scenes.scene_file import read_scene, read_tables
 from .solver.options import SolverOptions
 from .solver.solution import Solution
 from .solver.solve import solve
 from .view.export import ending_of, save
 
 SOLVED, BAD_SCENE, FAILED, NOT_WRITABLE, INTERRUPTED = 0, 2, 3, 4, 130
+
+File = TypeVar("File")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,37 +65,68 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _solve(given: argparse.Namespace) -> int:
     imported = process_time()
-    file = load_scene(given.scene)
-    folder = Path(given.out)
-    check_folder(folder)
+    folder = output_folder("--out", given.out)
+    file = _read(given.scene, read_scene, folder)
     if given.png:
         from .view.drawing import check_drawing
 
         check_drawing()
-    state = folder / "state.npz"
-    options = replace(SolverOptions(), **file.solver, checkpoint=state)
+    options = replace(SolverOptions(), **file.solver, checkpoint=folder / STATE)
     with bar("solving") as report:
         solution = solve(file.scene, options, on_fail="return", report=report)
     seconds = {"import": imported, **solution.cpu_seconds, "total": process_time()}
     solution = replace(solution, cpu_seconds=seconds)
-    save(solution, folder / "result.json")
-    save(solution, state)
-    previous(state).unlink(missing_ok=True)
-    if given.vtu:
-        save(solution, folder / "surface.vtu")
-    if given.png:
-        save(solution, folder / "picture.png")
     _say(solution.summary())
+    # the state first: where there is a result, the state beside it is of the same scene
+    names = [STATE, RESULT, *[SURFACE] * given.vtu, *[PICTURE] * given.png]
+    for name in names:
+        save(solution, folder / name)
+    remove(folder / STATE_BEFORE)
     return SOLVED if solution.success else FAILED
+
+
+def _read(path: str, read: Callable[[Any], File], folder: Path) -> File:
+    """A scene or sweep file, with the folder ready for its results.
+
+    Results of an older scene are gone then, also if this one is refused; a state stays that the
+    file itself starts from, or, if it is refused, one that an interrupted path goes on from.
+    """
+    start: Collection[str] = ()
+    try:
+        tables = read_tables(path)
+        start = _start_in(folder, tables)
+        file = read(tables)
+    except (SceneError, GeometryError):
+        remove_results(folder, start or _unfinished(folder))
+        raise
+    check_folder(folder)
+    remove_results(folder, start)
+    return file
+
+
+def _start_in(folder: Path, tables: Any) -> Collection[str]:
+    """Names of the states that stay, since the tables of a file say to start from one of them."""
+    states = (STATE, STATE_BEFORE)
+    try:
+        start = Path(tables["solver"]["start"]).resolve()
+    except (TypeError, KeyError, ValueError, OSError, RuntimeError):
+        return ()
+    return states if start in [(folder / name).resolve() for name in states] else ()
+
+
+def _unfinished(folder: Path) -> Collection[str]:
+    """Names of the states of a path that has not come to its end."""
+    from .solver.state import holds_path
+
+    return [name for name in (STATE, STATE_BEFORE) if holds_path(folder / name)]
 
 
 def _sweep(given: argparse.Namespace) -> int:
     from .analysis.sweep import sweep
-    from .scenes.sweep_file import load_sweep
+    from .scenes.sweep_file import read_sweep
 
-    file = load_sweep(given.sweep)
-    folder = Path(given.out)
-    check_folder(folder)
+    folder = output_folder("--out", given.out)
+    file = _read(given.sweep, read_sweep, folder)
     found = sweep(
         file.scene_of,
         file.over,
@@ -91,8 +135,9 @@ def _sweep(given: argparse.Namespace) -> int:
         timeout=given.timeout,
         options=replace(SolverOptions(), **file.solver),
         allow_mixed=given.allow_mixed,
+        retry_failed=given.retry_failed,
     )
-    for name in ("table.csv", "table.npz"):
+    for name in TABLES:
         found.save(folder / name)
     counts = ", ".join(f"{count} {name}" for name, count in found.statuses.items())
     _say(f"{len(found.records)} points ({found.computed} computed now): {counts}")
@@ -117,7 +162,7 @@ def _info(given: argparse.Namespace) -> int:
 
 def _plot(given: argparse.Namespace) -> int:
     state = _state_of(Path(given.result))
-    out = Path(given.out) if given.out else state.with_name("picture.png")
+    out = state.with_name(PICTURE) if given.out is None else _picture("--out", given.out)
     words = {
         name: getattr(given, name) for name in ("color", "view", "focus", "traction", "forces")
     }
@@ -140,6 +185,14 @@ def _plot(given: argparse.Namespace) -> int:
     return SOLVED
 
 
+def _picture(field: str, given: str) -> Path:
+    """A file to draw, in a folder that need not exist yet."""
+    path = Path(given)
+    if not path.suffix or path.is_dir():
+        raise OutputError(f"{field} = {given!r}: name a picture, like {PICTURE}")
+    return path
+
+
 def _export(given: argparse.Namespace) -> int:
     """Write other files of a result, by their endings; all endings are checked first."""
     files = [Path(name) for name in given.files]
@@ -154,7 +207,7 @@ def _export(given: argparse.Namespace) -> int:
 
 
 def _state_of(path: Path) -> Path:
-    return path / "state.npz" if path.is_dir() else path
+    return path / STATE if path.is_dir() else path
 
 
 def _load(path: Path) -> Solution:
@@ -167,7 +220,7 @@ def _result_of(path: Path) -> Path:
     """The file of a result to look at: of a folder its state, else its result."""
     if not path.is_dir():
         return path
-    names = ("state.npz", "result.json")
+    names = (STATE, RESULT)
     found = next((path / name for name in names if (path / name).exists()), None)
     if found is None:
         raise StateError(f"{path}: holds neither {' nor '.join(names)}")
@@ -208,6 +261,8 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--timeout", type=float, help="seconds per point")
     command.add_argument("--allow-mixed", action="store_true",
                          help="keep points of other options or versions")  # fmt: skip
+    command.add_argument("--retry-failed", action="store_true",
+                         help="compute again what is recorded, but not as a success")  # fmt: skip
     command = _command(commands, "info", _info, "print the summary of a result")
     command.add_argument("result", help="output folder, state.npz or result.json")
     command = _command(commands, "plot", _plot, "draw a result")

@@ -12,6 +12,7 @@ import io
 import json
 import math
 import os
+import stat
 import tempfile
 import zipfile
 from collections.abc import Callable, Mapping
@@ -71,8 +72,50 @@ def check_folder(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise OutputError(f"{folder}: cannot be written ({error})") from error
+
+
+def size_of(path: Path, most: int, wrong: type[Exception]) -> int:
+    """Bytes of a file that may be read, seen before it is opened: a pipe would keep its reader
+    waiting, a device never ends.
+
+    Parameters
+    ----------
+    path : links are followed.
+    most : bytes at most.
+    wrong : what to raise.
+    """
+    try:
+        found = path.stat()
+    except (OSError, ValueError) as error:
+        raise wrong(f"{path}: cannot be read ({error})") from error
+    if not stat.S_ISREG(found.st_mode):
+        kinds = (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe")
+        kind = next((name for is_kind, name in kinds if is_kind(found.st_mode)), "a device")
+        raise wrong(f"{path}: cannot be read: it is {kind}, name a regular file")
+    if found.st_size > most:
+        raise wrong(f"{path}: larger than {most} bytes; no such file is")
+    return found.st_size
+
+
+def read_file(path: Path, most: int, wrong: type[Exception]) -> bytes:
+    """All of a file that a user names; only regular ones are read (:func:`size_of`).
+
+    Parameters
+    ----------
+    most : bytes at most.
+    wrong : what to raise.
+    """
+    size = size_of(path, most, wrong)
+    try:
+        with open(path, "rb") as file:
+            data = file.read(size + 1)
+    except OSError as error:
+        raise wrong(f"{path}: cannot be read ({error})") from error
+    if len(data) > size:
+        raise wrong(f"{path}: cannot be read: it is larger than it says, or grows")
+    return data
 
 
 def previous(path: Path) -> Path:
@@ -124,19 +167,12 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Array]]:
     StateError
         Not readable, too large, not a state file, of a newer version, or not as it was written.
     """
-    try:
-        size = path.stat().st_size
-        if size > LARGEST_STATE:
-            raise StateError(f"{path}: larger than {LARGEST_STATE} bytes; no state file is")
-        data = path.read_bytes() if _is_state(path, size) else b""
-    except (OSError, ValueError) as error:
-        if isinstance(error, StateError):
-            raise
-        raise StateError(f"{path}: cannot be read ({error})") from error
-    if not data:
+    size = size_of(path, LARGEST_STATE, StateError)
+    if not _is_state(path, size):
         raise StateError(
             f"{path}: not a state file of iga_membrane, or cut off: its end has no checksum"
         )
+    data = read_file(path, LARGEST_STATE, StateError)
     schema = data[-_DIGITS - 4 : -_DIGITS].strip()
     if schema != str(SCHEMA).encode():
         raise StateError(
@@ -163,11 +199,14 @@ def read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, Array]]:
 
 def _is_state(path: Path, size: int) -> bool:
     """Whether a file ends like a state file; nothing else of it is read."""
-    if not path.is_file() or size < _TAIL:
+    if size < _TAIL:
         return False
-    with open(path, "rb") as file:
-        file.seek(size - _TAIL)
-        return file.read(len(_MAGIC)) == _MAGIC
+    try:
+        with open(path, "rb") as file:
+            file.seek(size - _TAIL)
+            return file.read(len(_MAGIC)) == _MAGIC
+    except OSError as error:
+        raise StateError(f"{path}: cannot be read ({error})") from error
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Array:

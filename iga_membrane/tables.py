@@ -5,13 +5,12 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from .arrays import Array
-from .errors import OutputError
+from .optional import optional
 
 Row = Mapping[str, Any]
 
@@ -43,7 +42,8 @@ def dataframe(rows: Sequence[Row]) -> Any:
     OutputError
         If pandas is not installed.
     """
-    return optional("pandas", "to_dataframe").DataFrame(list(rows), columns=names_of(rows))
+    pandas = optional("pandas", "to_dataframe", "tables")
+    return pandas.DataFrame(list(rows), columns=names_of(rows))
 
 
 def dataset(rows: Sequence[Row], along: Sequence[str]) -> Any:
@@ -59,29 +59,13 @@ def dataset(rows: Sequence[Row], along: Sequence[str]) -> Any:
     OutputError
         If xarray is not installed.
     """
-    xarray = optional("xarray", "to_xarray")
+    xarray = optional("xarray", "to_xarray", "tables")
     axes = {name: list(dict.fromkeys(row[name] for row in rows)) for name in along}
     shape = [len(values) for values in axes.values()]
     table = {name: _cells(rows, name).reshape(shape) for name in names_of(rows)}
     return xarray.Dataset(
         {name: (list(along), table[name]) for name in table if name not in axes}, coords=axes
     )
-
-
-def optional(module: str, wanted_by: str) -> Any:
-    """A library that is needed by some calls only.
-
-    Raises
-    ------
-    OutputError
-        If it is not installed; the message says how to install it.
-    """
-    try:
-        return import_module(module)
-    except ImportError as error:
-        raise OutputError(
-            f"{wanted_by} needs {module}, which is not installed: pip install {module}"
-        ) from error
 
 
 def _cells(rows: Sequence[Row], name: str) -> Array:

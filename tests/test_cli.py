@@ -1,5 +1,6 @@
 """Exit codes, files and their order: nothing is computed before it can be written (S4)."""
 
+import functools
 import json
 import os
 import subprocess
@@ -172,3 +173,155 @@ def test_two_runs_give_the_same_bits(scene, tmp_path):
         assert main(["solve", str(scene), "--out", str(tmp_path / name)]) == 0
         found.append(json.loads((tmp_path / name / "result.json").read_text())["measures"])
     assert found[0] == found[1]
+
+
+# One folder, one scene
+
+RESULTS = ("result.json", "state.npz", "surface.vtu", "picture.png")
+MINE = ("notes.txt", "other.vtu", "my picture.png", "table.csv.bak", "points/0123.json")
+
+
+@pytest.fixture
+def old(tmp_path):
+    """An output folder with all results that an older scene can leave, and with files of the
+    user's own, among them the points of a sweep."""
+    folder = tmp_path / "out"
+    (folder / "points").mkdir(parents=True)
+    for name in [*RESULTS, "state.previous.npz", "table.csv", "table.npz"]:
+        (folder / name).write_text("older")
+    save_drop(folder / "state.npz")
+    for name in MINE:
+        (folder / name).write_text("mine")
+    return folder
+
+
+@functools.cache
+def an_older_drop():
+    return iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
+
+
+def save_drop(path):
+    an_older_drop().save(path)
+
+
+def left(folder):
+    """What an older scene or this one left, all but the user's own files, which are untouched."""
+    assert all((folder / name).read_text() == "mine" for name in MINE)
+    return {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()} - {*MINE}
+
+
+@pytest.mark.parametrize("options", [[], ["--vtu"]])
+def test_a_folder_holds_the_results_of_one_scene(old, scene, options):
+    assert main(["solve", str(scene), "--out", str(old), *options]) == 0
+    assert left(old) == {"result.json", "state.npz", *["surface.vtu"] * len(options)}
+    measures = json.loads((old / "result.json").read_text())["measures"]
+    assert iga.load(old / "state.npz").measures == measures
+
+
+REFUSED = {
+    "value": lambda text: text.replace("150.0", "250.0"),
+    "key": lambda text: text.replace("volume", "volumes"),
+    "syntax": lambda text: text + "\n[[",
+    "memory": lambda text: text + "[solver]\nmax_memory_gb = 1e-9\n",
+    "start": lambda text: text + '[solver]\nstart = "nowhere.npz"\n',
+}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_a_refused_scene_leaves_no_older_success(old, scene, kind):
+    scene.write_text(REFUSED[kind](SCENE))
+    assert main(["solve", str(scene), "--out", str(old)]) == 2
+    assert left(old) == set()
+    assert main(["info", str(old)]) == 2
+
+
+def test_a_refused_sweep_leaves_its_points_but_no_older_table(old, scene):
+    scene.write_text(SCENE + '[[over]]\nparameter = "liquid.nothing"\nvalues = [1.0]\n')
+    assert main(["sweep", str(scene), "--out", str(old)]) == 2
+    assert left(old) == set()
+
+
+@pytest.mark.parametrize(
+    ("error", "code"), [(KeyboardInterrupt, 130), (MemoryError, 3), (iga.OutputError("full"), 4)]
+)
+def test_a_solve_that_is_broken_off_leaves_no_older_success(old, scene, monkeypatch, error, code):
+    def broken(*arguments, **options):
+        raise error
+
+    monkeypatch.setattr("iga_membrane.cli.solve", broken)
+    assert main(["solve", str(scene), "--out", str(old)]) == code
+    assert left(old) == set()
+
+
+def test_a_disk_that_fills_up_leaves_no_mixture(old, scene, monkeypatch, capsys):
+    """Neither the old files nor a result without its state; what was solved is printed."""
+    monkeypatch.setattr(os, "fsync", lambda handle: (_ for _ in ()).throw(OSError(28, "full")))
+    assert main(["solve", str(scene), "--out", str(old)]) == 4
+    assert left(old) == set()
+    assert "CONVERGED_STABLE" in capsys.readouterr().out
+
+
+def test_a_picture_that_cannot_be_drawn_leaves_no_older_one(old, scene, monkeypatch):
+    monkeypatch.setattr("iga_membrane.view.drawing.can_draw", lambda: False)
+    assert main(["solve", str(scene), "--out", str(old), "--png"]) == 4
+    assert left(old) == set()
+
+
+def test_an_older_result_that_cannot_be_removed_is_named_before_the_solve(old, scene, monkeypatch):
+    (old / "surface.vtu").unlink()
+    (old / "surface.vtu").mkdir()
+    monkeypatch.setattr("iga_membrane.cli.solve", lambda *a, **k: pytest.fail("computed"))
+    assert main(["solve", str(scene), "--out", str(old)]) == 4
+
+
+def test_older_results_are_removed_but_not_what_links_lead_to(old, scene, tmp_path):
+    (tmp_path / "elsewhere").write_text("mine")
+    for name in ("surface.vtu", "picture.png"):
+        (old / name).unlink()
+        (old / name).symlink_to(tmp_path / "elsewhere")
+    assert main(["solve", str(scene), "--out", str(old)]) == 0
+    assert left(old) == {"result.json", "state.npz"}
+    assert (tmp_path / "elsewhere").read_text() == "mine"
+
+
+@pytest.mark.parametrize("kind", ["value", "key"])
+def test_a_scene_that_starts_from_a_state_in_its_folder_keeps_it(old, scene, monkeypatch, kind):
+    """Refused, too: a slip of the pen does not cost the state that was to be gone on from."""
+    start = f'[solver]\nstart = "{old / "state.npz"}"\n'
+    scene.write_text(REFUSED[kind](SCENE + start))
+    assert main(["solve", str(scene), "--out", str(old)]) == 2
+    assert left(old) == {"state.npz", "state.previous.npz"}
+    monkeypatch.chdir(old.parent)
+    text = SCENE.replace("elements = 8", "elements = 20").replace("degree = 3", "degree = 4")
+    scene.write_text(text + '[solver]\nstart = "out/../out/state.npz"\n')
+    assert main(["solve", str(scene), "--out", "out"]) == 0
+    assert left(old) == {"result.json", "state.npz"}
+
+
+@pytest.mark.parametrize("out", ["", " ", "scene.toml", "scene.toml/out", "a\0b", "x" * 300])
+@pytest.mark.parametrize("command", ["solve", "sweep", "plot"])
+def test_what_is_no_folder_exits_4_before_anything(scene, tmp_path, monkeypatch, out, command):
+    """The empty name too, which is the working directory to Python."""
+    if (command, out) == ("plot", "scene.toml"):
+        return  # a picture may be drawn over a file
+    monkeypatch.chdir(tmp_path)
+    before = {p: p.read_bytes() for p in tmp_path.iterdir()}
+    for name in ("cli.solve", "analysis.sweep.sweep", "solver.state.load"):
+        monkeypatch.setattr(f"iga_membrane.{name}", lambda *a, **k: pytest.fail("computed"))
+    assert main([command, "scene.toml", "--out", out]) == 4
+    assert {p: p.read_bytes() for p in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("out", ["", " ", 5, "a\0b"])
+def test_a_sweep_in_python_refuses_what_is_no_folder(out, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises((iga.OutputError, iga.SceneError), match="out = "):
+        iga.sweep(lambda angle: pytest.fail("computed"), {"angle": [90.0]}, out=out)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_current_folder_is_one_like_any_other(scene, tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert main(["solve", str(scene), "--out", "."]) == 0
+    assert (tmp_path / "here" / "result.json").exists()

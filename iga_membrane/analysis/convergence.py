@@ -18,6 +18,8 @@ from ..arguments import checked
 from ..checks import anything, called, choice, integer, items, number, record
 from ..errors import OutputError, SceneError
 from ..fields import FIELDS
+from ..files import write_whole
+from ..optional import optional
 from ..scenes.liquid import Discretization, Model, space_name
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
@@ -152,11 +154,12 @@ class Study:
                 [run.space, run.degree, run.elements, run.status.name, *counts, *seconds,
                  run.memory, *(run.errors[name] for name in self.measures)]
             )  # fmt: skip
-        try:
-            with Path(path).open("w", newline="", encoding="utf-8") as file:
+
+        def write(name: str) -> None:
+            with open(name, "w", newline="", encoding="utf-8") as file:
                 csv.writer(file).writerows(rows)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written ({error})") from error
+
+        write_whole(Path(path), write)
 
     def plot(self, path: str | Path, *, measure: str | None = None, against: str = "cpu") -> None:
         """Picture of the error against its cost, one line a space; hollow marks did not succeed.
@@ -172,9 +175,8 @@ class Study:
         OutputError
             If the file cannot be written.
         """
-        from matplotlib.figure import Figure
-        from matplotlib.ticker import NullFormatter
-
+        Figure = optional("matplotlib.figure", "a plot").Figure
+        NullFormatter = optional("matplotlib.ticker", "a plot").NullFormatter
         name = choice("measure", self.measures[0] if measure is None else measure, self.measures)
         choice("against", against, COSTS)
         figure = Figure(figsize=(6.0, 4.5), layout="constrained")
@@ -199,8 +201,8 @@ class Study:
         axes.grid(True, alpha=0.3)
         axes.legend()
         try:
-            figure.savefig(path, dpi=150)
-        except (OSError, ValueError) as error:
+            write_whole(Path(path), lambda file: figure.savefig(file, dpi=150))
+        except ValueError as error:
             raise OutputError(f"{path}: cannot be written ({error})") from error
 
 

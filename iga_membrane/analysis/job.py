@@ -6,24 +6,28 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any
 
 from .. import __version__
-from ..errors import GeometryError, SceneError
+from ..errors import SceneError
 from ..records import digest
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
 from ..solver.result_file import result
 from ..solver.solve import solve
 from ..threads import one_thread
-from .lanes import WorkerStartError
+from .lanes import UnusableWorkersError
+from .portable import Portable, identity
 from .record_store import LAPSE, Record, RecordStore
 
 log = logging.getLogger("iga_membrane")
 
 TRIES = 3
 """How often a point whose worker is lost is tried before it is recorded as failed."""
+LOST = ("WorkerLostError", "KilledWorker")
+"""What executors raise for a call whose worker died, each time if it was tried several times: ours,
+Dask's. Whatever else they raise is no fault of the point."""
 
 
 def question_of(options: SolverOptions) -> str:
@@ -36,19 +40,33 @@ def fingerprint(scene: Scene) -> str:
 
 
 class Job:
-    """What is left of a sweep; fills ``found``, and ``computed`` with what it did itself."""
+    """What is left of a sweep; fills ``found``, and ``computed`` with what it did itself.
+
+    Parameters
+    ----------
+    scene_of : parameters to a scene.
+    left : points by their keys.
+    found : records by key.
+    void : records in the store that do not count.
+    store : where records are kept, if they are.
+    options : of every solve.
+    report : called with the number of points found.
+    in_flight : points claimed and handed out at a time.
+    """
 
     def __init__(
         self,
         scene_of: Callable[..., Scene],
         left: Mapping[str, dict[str, Any]],
         found: dict[str, Record],
+        void: Mapping[str, Record],
         store: RecordStore | None,
         options: SolverOptions,
         report: Callable[[float], None],
         in_flight: int,
     ) -> None:
-        self._scene_of, self._left, self._found = scene_of, left, found
+        self._scene_of, self._function = Portable(scene_of), identity(scene_of)
+        self._left, self._found, self._void = left, found, void
         self._store, self._options, self._report = store, options, report
         self._in_flight, self._renewed = in_flight, time.monotonic()
         self._tries = dict.fromkeys(left, 0)
@@ -61,6 +79,8 @@ class Job:
         ------
         BrokenExecutor
             If the executor takes no more calls.
+        SceneError
+            If workers cannot be started or cannot load the function.
         """
         waiting = deque(key for key in self._left if key not in self._found)
         running: dict[Future[Record], str] = {}
@@ -86,8 +106,11 @@ class Job:
                     del running[done]
                 self._renew(running.values())
                 self._report(len(self._found))
+        except UnusableWorkersError as error:
+            raise SceneError(f"executor: {error}") from error
         finally:
-            for key in running.values():
+            for future, key in running.items():
+                future.cancel()
                 self._release(key)
 
     def _free(self, key: str) -> bool:
@@ -97,10 +120,11 @@ class Job:
         if not self._store.claim(key):
             return False
         kept = self._store.read(key)
-        if kept is not None:
-            self._found[key] = kept
-            self._store.release(key)
-        return kept is None
+        if kept is None or kept == self._void.get(key):
+            return True
+        self._found[key] = kept
+        self._store.release(key)
+        return False
 
     def _renew(self, keys: Iterable[str]) -> None:
         if self._store is not None and time.monotonic() - self._renewed > 0.1 * LAPSE:
@@ -116,14 +140,9 @@ class Job:
         point = self._left[key]
         try:
             record = done.result()
-        except BrokenExecutor:
-            raise
-        except WorkerStartError as error:
-            raise SceneError(
-                f"executor: {error}; call sweep under ``if __name__ == '__main__':``, or give "
-                "executor=ThreadPoolExecutor()"
-            ) from error
         except Exception as error:
+            if type(error).__name__ not in LOST:
+                raise
             self._tries[key] += 1
             reason = f"{type(error).__name__}: {error}"
             log.warning("%s: %s (try %d of %d)", point, reason, self._tries[key], TRIES)
@@ -131,6 +150,7 @@ class Job:
                 self._release(key)
                 return False
             record = {"parameters": point, "question": question_of(self._options), "error": reason}
+        record["function"] = self._function
         if self._store is not None:
             self._store.write(key, record)
         self._found[key] = record
@@ -140,14 +160,33 @@ class Job:
 
 @one_thread  # the making of the scene too
 def solve_point(
-    scene_of: Callable[..., Scene], point: dict[str, Any], options: SolverOptions
+    scene_of: Portable, point: dict[str, Any], options: SolverOptions
 ) -> Record:
-    """One point, in a worker: its result, or why there is none."""
+    """One point, in a worker: its result, or why there is none.
+
+    Raises
+    ------
+    UnusableWorkersError
+        If this worker lacks a module that the function needs.
+    """
     record: Record = {"parameters": point, "question": question_of(options)}
     try:
-        scene = scene_of(**point)
+        build = scene_of.function
+    except Exception as error:
+        raise _lacking(error) from error
+    try:
+        scene = build(**point)
         record["scene"] = fingerprint(scene)
         record["result"] = result(solve(scene, options, on_fail="return"))
-    except (SceneError, GeometryError) as error:
+    except ImportError as error:
+        raise _lacking(error) from error
+    except Exception as error:
         record["error"] = f"{type(error).__name__}: {error}"
     return record
+
+
+def _lacking(error: Exception) -> UnusableWorkersError:
+    return UnusableWorkersError(
+        f"scene_of cannot be run in a worker ({type(error).__name__}: {error}): install what it "
+        "imports where the workers run, or name its folder in PYTHONPATH"
+    )

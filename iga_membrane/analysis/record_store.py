@@ -7,17 +7,21 @@ import hashlib
 import json
 import os
 import socket
+import sys
+import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..errors import OutputError
-from ..files import check_folder, write_whole
+from ..errors import OutputError, StateError
+from ..files import check_folder, read_file, write_whole
 from ..records import digest
 
 Record = dict[str, Any]
 LARGEST_RECORD = 50_000_000
 """Bytes of a record at most."""
+LARGEST_CLAIM = 1_000
+"""Bytes of a claim at most; it holds a host name of at most 255 characters and a number."""
 LAPSE = 300.0
 """Seconds after which a claim that nobody has renewed counts for nothing."""
 
@@ -51,13 +55,11 @@ class RecordStore:
 
     def read(self, key: str) -> Record | None:
         """The record of a point, or None where there is none that can be trusted."""
-        path = self._path(key)
         try:
-            if path.stat().st_size > LARGEST_RECORD:
-                return None
-            mark, text = path.read_text(encoding="utf-8").split("\n", 1)
+            text = read_file(self._path(key), LARGEST_RECORD, StateError).decode("utf-8")
+            mark, text = text.split("\n", 1)
             record = json.loads(text) if mark == _checksum(text) else None
-        except (OSError, ValueError, RecursionError):
+        except (ValueError, RecursionError):
             return None
         return record if isinstance(record, dict) else None
 
@@ -76,23 +78,31 @@ class RecordStore:
         OutputError
             If the claim cannot be written.
         """
-        path, mine = self._claim(key), self.folder / f".{key}.{os.getpid()}"
-        try:
-            mine.write_text(this_process(), encoding="utf-8")
-        except OSError as error:
-            mine.unlink(missing_ok=True)
-            raise OutputError(f"{mine}: cannot be written ({error})") from error
-        try:
-            if _abandoned(path, mine.stat().st_mtime):
-                # of those that see a dead claim one renames it away
-                os.rename(path, mine.with_suffix(".dead"))
-                mine.with_suffix(".dead").unlink()
-            os.link(mine, path)
-        except (FileExistsError, FileNotFoundError):
+        path = self._claim(key)
+        if _made(path):
+            return True
+        now = self._now()
+        if not _abandoned(path, now):
             return False
-        finally:
-            mine.unlink()
-        return True
+        # of those that see a dead claim one renames it away
+        dead = self.folder / f".{key}.{os.getpid()}.dead"
+        try:
+            os.rename(path, dead)
+        except FileNotFoundError:
+            return False
+        if not _abandoned(dead, now):  # another one has made it anew meanwhile
+            os.rename(dead, path)
+            return False
+        dead.unlink()
+        return _made(path)
+
+    def _now(self) -> float:
+        """By the clock of the folder, which may be another machine's."""
+        try:
+            with tempfile.NamedTemporaryFile(dir=self.folder, prefix=".now-") as file:
+                return os.fstat(file.fileno()).st_mtime
+        except OSError as error:
+            raise OutputError(f"{self.folder}: cannot be written ({error})") from error
 
     def renew(self, keys: Iterable[str]) -> None:
         """Say that this process still computes its points."""
@@ -120,22 +130,46 @@ def this_process() -> str:
     return f"{socket.gethostname()} {os.getpid()}"
 
 
+def _made(path: Path) -> bool:
+    """Whether this process has made a claim, which nobody had.
+
+    Raises
+    ------
+    OutputError
+    """
+    try:
+        with open(path, "x", encoding="utf-8") as file:
+            file.write(this_process())
+    except FileExistsError:
+        return False
+    except OSError as error:
+        path.unlink(missing_ok=True)
+        raise OutputError(f"{path}: cannot be written ({error})") from error
+    return True
+
+
 def _abandoned(path: Path, now: float) -> bool:
     """Whether the process that made a claim is gone, now by the clock of the folder."""
     try:
-        host, _, pid = path.read_text(encoding="utf-8").partition(" ")
         lapsed = now - path.stat().st_mtime > LAPSE
     except FileNotFoundError:
         return False
-    return lapsed or (host == socket.gethostname() and _gone(int(pid)))
+    try:
+        text = read_file(path, LARGEST_CLAIM, StateError).decode("utf-8", "replace")
+    except StateError:  # taken away meanwhile, or no claim
+        return lapsed
+    host, _, pid = text.partition(" ")
+    return lapsed or (host == socket.gethostname() and pid.isdecimal() and _gone(int(pid)))
 
 
 def _gone(pid: int) -> bool:
-    """Whether a process has ended, also if its parent has not taken notice yet."""
+    """Whether a process of this host has ended, also if its parent has not taken notice yet."""
+    if sys.platform == "win32" or pid <= 0:
+        return False  # there a signal 0 is Ctrl-C; a claim then lapses
     try:
         os.kill(pid, 0)
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
     except ProcessLookupError:
         return True
-    except OSError:
+    except (OSError, OverflowError):
         return False  # another user's, or a system without /proc

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -9,7 +10,6 @@ from concurrent.futures import BrokenExecutor, Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +21,15 @@ from ..checks import POSITIVE, integer, number
 from ..checks import record as check_record
 from ..errors import OutputError, SceneError
 from ..files import write_whole
+from ..output_folder import output_folder
 from ..progress import bar
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
 from ..solver.result_file import flat
 from ..tables import column, csv_text, dataframe, dataset, names_of
 from .job import Job, fingerprint, question_of
-from .lanes import ProcessLanes, processors
+from .lanes import ProcessLanes, UnusableWorkersError, processors
+from .portable import Portable, identity
 from .record_store import Record, RecordStore
 
 log = logging.getLogger("iga_membrane")
@@ -36,6 +38,7 @@ IN_FLIGHT = 64
 """Points handed at a time to an executor whose number of workers is not said."""
 MOST = 1_000_000
 """Points of a sweep at most."""
+SUCCESS = "CONVERGED_STABLE"
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ class Sweep:
     @property
     def success(self) -> bool:
         """Whether every point is a success."""
-        return all(_status(record) == "CONVERGED_STABLE" for record in self.records)
+        return all(_status(record) == SUCCESS for record in self.records)
 
     @property
     def statuses(self) -> dict[str, int]:
@@ -130,6 +133,7 @@ def sweep(
     timeout: float | None = None,
     options: SolverOptions | None = None,
     allow_mixed: bool = False,
+    retry_failed: bool = False,
 ) -> Sweep:
     """Solve the scenes of a grid of parameters.
 
@@ -139,7 +143,8 @@ def sweep(
 
     Parameters
     ----------
-    scene_of : parameters by name to a scene; for processes a function at the top level of a module.
+    scene_of : parameters by name to a scene. To processes a function of a notebook, a script or
+        inside another function goes by value, one of a module by its name.
     over : name to values; the grid is their product, the last name varying fastest.
     out : folder of the records; without it nothing is kept.
     executor : any ``concurrent.futures.Executor``, of Dask or MPI too; by default processes of this
@@ -149,36 +154,45 @@ def sweep(
     timeout : seconds per point, of the default executor.
     options : of every solve.
     allow_mixed : whether records of other options, scenes or versions may stand beside new ones.
+    retry_failed : whether points that are recorded, but not as a success, are computed again.
 
     Returns
     -------
     Sweep
-        A solve that fails, or a scene that is refused, is a record like any other.
+        A solve that fails, a scene that is refused and a point that killed its workers are records
+        like any other.
 
     Raises
     ------
     SceneError
-        An empty grid; a function that cannot be sent to a process; records in ``out`` of another
-        question.
+        An empty grid; a function that does not take its parameters or cannot be sent to a process;
+        workers that cannot be started or cannot import what the function needs, which is recorded
+        for no point; records in ``out`` of another question.
     OutputError
         If ``out`` cannot be written; checked before any work.
     """
     options = SolverOptions() if options is None else options
     points = _grid(over)
     names = tuple(over)
-    store = None if out is None else RecordStore(Path(out))
+    _check_parameters(scene_of, points[0])
+    store = None if out is None else RecordStore(output_folder("out", out))
     keys = [RecordStore.key(point) for point in points]
     found: dict[str, Record] = {}
     if store is not None:
         found = {key: kept for key in keys if (kept := store.read(key)) is not None}
-    mixed = _check_mixed(scene_of, found, options, allow_mixed)
+    function = identity(scene_of)
+    void = {key: kept for key, kept in found.items() if not _counts(kept, function, retry_failed)}
+    found = {key: kept for key, kept in found.items() if key not in void}
+    mixed = _check_mixed(scene_of, function, found, options, allow_mixed)
     left = {key: point for key, point in zip(keys, points, strict=True) if key not in found}
     computed = 0
     if left:
         if executor is None:
             _check_sendable(scene_of)
         with bar("sweep", len(points)) as report:
-            job = Job(scene_of, left, found, store, options, report, _in_flight(executor, workers))
+            job = Job(
+                scene_of, left, found, void, store, options, report, _in_flight(executor, workers)
+            )
             try:
                 with _running(executor, workers, timeout) as pool:
                     job.run(pool)
@@ -213,25 +227,61 @@ def _grid(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     return points
 
 
+def _check_parameters(scene_of: Callable[..., Scene], point: dict[str, Any]) -> None:
+    """See that the function takes the parameters, where Python can tell."""
+    try:
+        signature = inspect.signature(scene_of)
+    except ValueError:
+        return
+    try:
+        signature.bind(**point)
+    except TypeError as error:
+        raise SceneError(
+            f"over: scene_of{signature} cannot be called with {', '.join(point)} ({error}); name "
+            "its parameters in over"
+        ) from error
+
+
+def _counts(kept: Record, function: str, retry_failed: bool) -> bool:
+    """Whether a record is an answer to this sweep. One without a scene tells only of the function
+    that was to build it."""
+    if retry_failed and _status(kept) != SUCCESS:
+        return False
+    return "scene" in kept or kept.get("function") == function
+
+
 def _check_mixed(
     scene_of: Callable[..., Scene],
+    function: str,
     found: Mapping[str, Record],
     options: SolverOptions,
     allowed: bool,
 ) -> bool:
-    """Whether records answer another question: other options, version, or (the first and the last
-    of them are built to see) another scene."""
+    """Whether records answer another question: other options, version, or another scene.
+
+    Scenes are built to see: all those of another function, but of this one, since what it calls
+    may have changed, only the first and the last.
+    """
     question = question_of(options)
     other = any(kept.get("question") != question for kept in found.values())
-    solved = [kept for kept in found.values() if "result" in kept]
-    for kept in solved[:1] + solved[1:][-1:]:
-        other = other or kept.get("scene") != fingerprint(scene_of(**kept["parameters"]))
+    built = [kept for kept in found.values() if "scene" in kept]
+    ours = [kept for kept in built if kept.get("function") == function]
+    asked = [kept for kept in built if kept.get("function") != function] + ours[:1] + ours[1:][-1:]
+    other = other or any(_scene(scene_of, kept["parameters"]) != kept["scene"] for kept in asked)
     if other and not allowed:
         raise SceneError(
             f"out: {len(found)} records there, some of other options, scenes or another version "
             "than this sweep's; choose another folder, or allow_mixed=True"
         )
     return other
+
+
+def _scene(scene_of: Callable[..., Scene], point: dict[str, Any]) -> str | None:
+    """Fingerprint of the scene of a point; None where there is none."""
+    try:
+        return fingerprint(scene_of(**point))
+    except Exception:
+        return None
 
 
 def _in_flight(executor: Executor | None, workers: int | None) -> int:
@@ -243,11 +293,11 @@ def _in_flight(executor: Executor | None, workers: int | None) -> int:
 
 def _check_sendable(scene_of: Callable[..., Scene]) -> None:
     try:
-        ForkingPickler.dumps(scene_of)
+        _ = Portable(scene_of).packed
     except Exception as error:
         raise SceneError(
-            f"scene_of = {scene_of!r}: cannot be sent to a process ({error}); define it at the top "
-            "level of a module, or give executor=ThreadPoolExecutor()"
+            f"scene_of = {scene_of!r}: cannot be sent to a process ({error}); make inside of it "
+            "what cannot be copied, or give executor=ThreadPoolExecutor(1)"
         ) from error
 
 
@@ -259,7 +309,10 @@ def _running(
     if executor is not None:
         yield executor
         return
-    own = ProcessLanes(workers, timeout)
+    try:
+        own = ProcessLanes(workers, timeout)
+    except UnusableWorkersError as error:
+        raise SceneError(f"executor: {error}") from error
     try:
         yield own
     finally:

@@ -15,6 +15,7 @@ from typing import Any
 from ..arguments import checked
 from ..checks import choice, path_values
 from ..errors import SceneError
+from ..files import read_file
 from .liquid import MODELS
 from .scene import Ramp, Scene
 from .scene_keys import KEYS, check_values, later, table_of
@@ -63,26 +64,22 @@ def read_tables(path: str | Path) -> Any:
     Raises
     ------
     SceneError
-        Not readable, too large, or not TOML/JSON.
+        Not a regular file, not readable, too large, or not TOML/JSON.
     """
     path = Path(path)
+    data = read_file(path, LARGEST_FILE, SceneError)
     try:
-        size = path.stat().st_size
-        text = path.read_text(encoding="utf-8") if size <= LARGEST_FILE else ""
-    except (OSError, ValueError) as error:
+        text = data.decode("utf-8")
+    except ValueError as error:
         raise SceneError(f"{path}: cannot be read as text ({error})") from error
-    if size > LARGEST_FILE:
-        raise SceneError(f"{path}: larger than {LARGEST_FILE} bytes; no scene file is")
     try:
         if path.suffix == ".json":
-            data = json.loads(text, object_pairs_hook=_no_duplicates)
-        else:
-            data = tomllib.loads(text)
+            return json.loads(text, object_pairs_hook=_no_duplicates)
+        return tomllib.loads(text)
     except SceneError:
         raise
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{path}: not a scene file ({error})") from error
-    return data
 
 
 def read_scene(data: Any) -> SceneFile:

@@ -55,7 +55,16 @@ def load_sweep(path: str | Path) -> SweepFile:
         As for a scene file; or ``over`` missing or wrong. The scene of the first point is built to
         see that it can be.
     """
-    data = read_tables(path)
+    return read_sweep(read_tables(path))
+
+
+def read_sweep(data: Any) -> SweepFile:
+    """The sweep that the tables of a sweep file ask for.
+
+    Raises
+    ------
+    SceneError
+    """
     tables = dict(data) if isinstance(data, Mapping) else {}
     entries = tables.pop("over", None)
     if not isinstance(entries, list) or not entries:

@@ -48,6 +48,14 @@ def load(path: str | Path, *, also: Sequence[type] = ()) -> Solution:
     )
 
 
+def holds_path(path: Path) -> bool:
+    """Whether a file is the state of a path on its way: no solution's, not damaged, and there."""
+    try:
+        return isinstance(_read(path), Progress)
+    except StateError:
+        return False
+
+
 def write_state(path: Path, state: Solution | Progress, *, keep: bool = False) -> None:
     """Write a state file, whole or not at all.
 

@@ -14,6 +14,7 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import record
 from ..errors import SceneError
+from ..optional import optional
 from ..splines import Basis, bspline_basis, tensor_space
 from .bezier import bezier_net
 from .surface import Surface
@@ -66,8 +67,7 @@ def to_geomdl(surface: Surface) -> Any:
     degree, rings closed by equal points. geomdl scales the
     parameters to [0, 1].
     """
-    from geomdl import NURBS, BSpline
-
+    NURBS, BSpline = (optional(f"geomdl.{name}", "to_geomdl") for name in ("NURBS", "BSpline"))
     space = surface.space
     weights, net = space.weights, surface.net
     knots = [basis.knots for basis in space.bases if basis.knots is not None]
@@ -94,12 +94,11 @@ def write_geomdl(surface: Surface, path: str) -> None:
     ------
     OSError
     """
-    from geomdl import exchange
-    from geomdl.exceptions import GeomdlException
-
+    exchange = optional("geomdl.exchange", "a .geomdl.json file")
+    failed = optional("geomdl.exceptions", "a .geomdl.json file").GeomdlException
     try:
         exchange.export_json(to_geomdl(surface), path)
-    except GeomdlException as error:  # what it makes of a full disk
+    except failed as error:  # what it makes of a full disk
         raise OSError(str(error)) from error
 
 

@@ -14,6 +14,8 @@ from ..arguments import checked
 from ..checks import POSITIVE
 from ..errors import OutputError, SceneError
 from ..files import check_folder, write_whole
+from ..optional import optional
+from ..output_folder import FRAME, remove
 from ..solver.solution import Solution
 from ..solver.trace import Path as Walk
 from .fields import field
@@ -64,10 +66,12 @@ def animate(
     folder = path if path.suffix == "" else None
     if folder is not None:
         check_folder(folder)
+        for frame in folder.glob(FRAME.format("[0-9]" * 4)):
+            remove(frame)  # of an older path, which may have been longer
     with tempfile.TemporaryDirectory() as scratch:
         frames = []
         for k, (solution, (_, length), text) in enumerate(zip(found, boxes, texts, strict=True)):
-            frame = (folder or Path(scratch)) / f"frame_{k:04d}.png"
+            frame = (folder or Path(scratch)) / FRAME.format(f"{k:04d}")
             plot(solution, frame, zoom=zoom * length / span, **options)
             frames.append(_with_text(frame, text))
         if folder is None:
@@ -79,8 +83,9 @@ def animate(
 
 def _with_text(frame: Path, text: str) -> Any:
     """The picture of a frame, with a line of text in its corner, there and in the file."""
-    from PIL import Image, ImageDraw, ImageFont
-
+    Image, ImageDraw, ImageFont = (
+        optional(f"PIL.{name}", "an animation") for name in ("Image", "ImageDraw", "ImageFont")
+    )
     with Image.open(frame) as opened:
         image = opened.convert("RGB")
     if text:

@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 from ..errors import OutputError
+from ..optional import optional
 
 REMEDY = "on Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri"
 _PROBE = """
@@ -34,6 +35,7 @@ def check_drawing() -> None:
     ------
     OutputError
     """
+    optional("vtkmodules", "a picture")
     if not can_draw():
         raise OutputError(f"pictures cannot be drawn on this machine: {REMEDY}")
 
@@ -63,6 +65,4 @@ def _headless() -> None:
 def pyvista() -> Any:
     """The library, ready to draw without a display."""
     _headless()
-    import pyvista
-
-    return pyvista
+    return optional("pyvista", "a picture or a .vtu file")

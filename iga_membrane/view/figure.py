@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import OutputError
 from ..files import write_whole
-from ..tables import optional
+from ..optional import optional
 
 DPI = 200
 """Dots per inch of pictures without vectors."""
@@ -28,10 +28,9 @@ def figure(
     OutputError
         If matplotlib is not installed, or does not know the path's ending.
     """
-    optional("matplotlib", "a plot")
-    from matplotlib.figure import Figure
-
-    made = Figure(figsize=(width, height), layout="constrained")
+    made = optional("matplotlib.figure", "a plot").Figure(
+        figsize=(width, height), layout="constrained"
+    )
     known = made.canvas.get_supported_filetypes()
     if Path(path).suffix.removeprefix(".") not in known:
         raise OutputError(f"{path}: ending must be one of {', '.join('.' + k for k in known)}")

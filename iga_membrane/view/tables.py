@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..optional import optional
 from ..solids import Sphere
 from ..solver.lines import contact_lines
-from ..tables import Row, optional
+from ..tables import Row
 from .fields import FIELDS, field
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def field_dataset(solution: Solution, resolution: int) -> Any:
     OutputError
         If xarray is not installed.
     """
-    xarray = optional("xarray", "to_xarray")
+    xarray = optional("xarray", "to_xarray", "tables")
     one, two = solution.surface.space.bases
     # the middles of equal intervals keep away from poles, where there is no normal
     middles = (np.arange(resolution) + 0.5) / resolution

@@ -11,6 +11,7 @@ from ..arrays import Array, Index
 from ..splines.bernstein import bernstein
 from ..surface.bezier import bezier_net
 from ..surface.surface import Surface
+from .drawing import pyvista
 from .fields import FIELDS, field
 
 if TYPE_CHECKING:
@@ -34,8 +35,7 @@ def bezier_order(p1: int, p2: int) -> Index:
 
 def grid(surface: Surface) -> Any:
     """``pyvista.UnstructuredGrid`` of rational Bezier cells."""
-    import pyvista as pv
-
+    pv = pyvista()
     cells = bezier_net(surface)
     count, n1, n2, _ = cells.shape
     points = cells.reshape(count, n1 * n2, 4)[:, bezier_order(n1 - 1, n2 - 1)]

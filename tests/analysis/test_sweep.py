@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
@@ -99,7 +100,7 @@ def test_scenes_that_are_refused_or_fail_are_records():
     assert np.isnan(found.column("height")[1])
     with ThreadPoolExecutor(1) as executor:
         failed = iga.sweep(
-            drop, {"angle": [30.0], "bond": [50.0]}, executor=executor,
+            drop, {"angle": [150.0], "bond": [10.0]}, executor=executor,
             options=iga.SolverOptions(max_iterations=1),
         )  # fmt: skip
     assert failed.records[0]["result"]["success"] is False
@@ -121,6 +122,8 @@ def test_scenes_that_are_refused_or_fail_are_records():
         ({"angle": [90.0]}, {"workers": 0}, "workers = 0"),
         ({"angle": [90.0]}, {"timeout": -1.0}, "timeout"),
         ({"angle": [90.0]}, {"options": 5}, "options = 5"),
+        ({"angel": [90.0]}, {}, "angel"),
+        ({"angle": [90.0], "tilt": [0.0]}, {}, "tilt"),
     ],
 )
 def test_bad_sweeps_are_named(over, options, said):
@@ -128,9 +131,18 @@ def test_bad_sweeps_are_named(over, options, said):
         iga.sweep(drop, over, **options)
 
 
-def test_a_function_that_cannot_be_sent_is_named():
-    with pytest.raises(iga.SceneError, match="top level of a module"):
-        iga.sweep(lambda angle: drop(angle), {"angle": [90.0]})
+def test_a_function_that_cannot_be_sent_is_named(tmp_path):
+    lock = threading.Lock()
+
+    def scene_of(angle):
+        with lock:
+            return drop(angle)
+
+    with pytest.raises(iga.SceneError, match="cannot be sent to a process"):
+        iga.sweep(scene_of, {"angle": [90.0]}, out=tmp_path)
+    with ThreadPoolExecutor(1) as executor:
+        found = iga.sweep(scene_of, {"angle": [90.0]}, out=tmp_path, executor=executor)
+    assert (found.success, found.computed) == (True, 1)
 
 
 def test_a_folder_that_cannot_be_written_is_named_before_any_work(tmp_path):
