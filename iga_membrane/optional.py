@@ -30,7 +30,8 @@ def optional(module: str, wanted_by: str, extra: str = "") -> Any:
     except ImportError as error:
         name = module.partition(".")[0]
         library = _BROUGHT_BY.get(name, name)
-        source = f'"iga-membrane[{extra}]"' if extra else library
+        group = f' (or "iga-membrane[{extra}]")' if extra else ""
         raise OutputError(
-            f"{wanted_by} needs {library}, which cannot be loaded ({error}): pip install {source}"
+            f"{wanted_by} needs {library}, which is not installed or broken ({error}): "
+            f"pip install {library}{group}"
         ) from error

@@ -31,7 +31,7 @@ def without(monkeypatch, library):
             monkeypatch.setitem(sys.modules, name, None)
 
 
-TABLES = 'pip install "iga-membrane[tables]"'
+TABLES = '"iga-membrane[tables]"'
 CALLS = {
     "frame of a solution": ("pandas", TABLES, lambda s, w, path: s.to_dataframe()),
     "frame of a sweep": ("pandas", TABLES, lambda s, w, path: w.to_dataframe()),

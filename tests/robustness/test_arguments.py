@@ -318,7 +318,7 @@ TAKES = {
         Basis.periodic Crossing.rising PlaneContactLine.covered SolverOptions.audit
         SolverOptions.follow_instability SphereContactLine.covered Stabilization.projected
         Sweep.mixed WholeMembrane.projected lagrange_basis.periodic liquid_sheet.liquid_weight
-        plot.traction plot.forces ring_space.corners sweep.allow_mixed
+        plot.traction plot.forces ring_space.corners sweep.allow_mixed sweep.retry_failed
     """,
     "1e308, 1e-300, -1, nan, inf, five, half": """
         BodyDensity.constant Derivatives.gradient Derivatives.hessian PullOff.force PullOff.at

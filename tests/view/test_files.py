@@ -1,7 +1,6 @@
 """Files of a solution come back from other programs with the same shape, areas and forces."""
 
 import csv
-import sys
 
 import numpy as np
 import pytest
@@ -208,10 +207,3 @@ def test_fields_and_paths_in_xarray(solution):
     path = caps()
     along = path.to_xarray()
     assert along.sag.sel({"sheet.pressure": 1.0}) == path.solutions[1].measures["sag"]
-
-
-@pytest.mark.parametrize(("call", "library"), [("to_dataframe", "pandas"), ("to_xarray", "xarray")])
-def test_a_library_that_is_missing_is_named_with_the_remedy(solution, monkeypatch, call, library):
-    monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(iga.OutputError, match=f"pip install {library}"):
-        getattr(solution, call)()
