@@ -59,3 +59,43 @@ def _plain(unit: str) -> str:
     text = unit.replace("\u00b5", "u").replace("\u03bc", "u").replace("\u00b3", "^3")
     text = re.sub(r"(?<=[ms])([23])$", r"^\1", text.replace("\u00b2", "^2"))
     return text[:-1] + "l" if text in ("L", "mL", "uL", "nL", "pL", "fL") else text
+
+
+EARTH = 9.7, 9.9
+"""Accelerations that can only be metres per squared second."""
+PLAUSIBLE = {
+    "liquid.surface_tension": (1e-3, 1.0, "N/m"),
+    "liquid.density": (0.1, 3e4, "kg/m^3"),
+    "liquid.volume": (0.0, 1e-3, "m^3"),
+}
+"""Ranges in SI: liquids have tensions of 0.01 to 0.6 and densities of 500 to 14000, droplets much
+less than a litre; with a factor for what is rare."""
+
+
+def says_si(acceleration: float) -> bool:
+    """Whether an acceleration tells that a scene is in SI."""
+    return EARTH[0] <= acceleration <= EARTH[1]
+
+
+def implausible(
+    acceleration: float, tension: float, density: float, volume: float | None
+) -> tuple[str, ...]:
+    """What is hard to believe in a scene whose acceleration says that it is in SI."""
+    if not says_si(acceleration):
+        return ()
+    given = zip(PLAUSIBLE.items(), (tension, density, volume), strict=True)
+    return tuple(
+        f"{field} = {value:g}: gravity of {acceleration:g} reads as m/s^2, and {value:g} {unit} is "
+        f"hard to believe (expected {least:g} to {most:g}); give all fields in SI, as iga.si does"
+        for (field, (least, most, unit)), value in given
+        if value is not None and value and not least <= abs(value) <= most
+    )
+
+
+def length_as_text(length: float, *, si: bool) -> str:
+    """``4.5 mm`` in SI, else the number in the user's own unit."""
+    if not si:
+        return f"{length:.2g}"
+    units = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"))
+    size, unit = next((pair for pair in units if length >= pair[0]), (1e-9, "nm"))
+    return f"{float(f'{length / size:.2g}'):g} {unit}"

@@ -79,6 +79,7 @@ def asperity_cell(
     """
     liquid, asked = with_defaults(liquid, discretization)
     r, (x, y, z) = sphere.radius, sphere.center
+    Scale(r, liquid.surface_tension).check_lengths("cell.size", size)
     reach = max(abs(x), abs(y)) if shape == "square" else float(np.hypot(x, y))
     if reach + r >= 0.5 * size:
         raise SceneError(

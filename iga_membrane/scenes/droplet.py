@@ -25,6 +25,7 @@ from ..terms import (
     TrimmedContactLine,
     Volume,
 )
+from ..terms.term import ROOM
 from .approach import from_alone, from_another_angle
 from .asperities import STARTS
 from .beside import check_particles
@@ -32,6 +33,7 @@ from .bridge import axes_between, bridge, moved_apart, room_between
 from .description import described_droplet
 from .foot import CONTACT_LINES, foot_of
 from .free import at_displacement, frame_of, pulled_by, seat_of
+from .hints import hints
 from .liquid import Discretization, Liquid, with_defaults
 from .moving import check_fixed, fixed, moving
 from .one_asperity import discretizations as asperity_lines
@@ -138,13 +140,8 @@ def sessile_droplet(
         contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
-    with np.errstate(over="ignore", invalid="ignore"):
-        bond = liquid.density * local * length**2 / liquid.surface_tension
-    if not (np.isfinite(bond).all() and 0.0 < length**3 < np.inf):
-        raise SceneError(
-            f"liquid.volume = {volume:g}, density, gravity, surface_tension: their Bond number or "
-            "length leaves the range of floating point numbers; choose other units"
-        )
+    bond = _bond_numbers(volume, liquid, local, scale)
+    scale.local_solid(substrate)  # refuses sizes that it cannot hold
     across = float(np.linalg.norm(bond[:2]))
     hangs = asked_substrate is None and not bridges and hold == "none"
     if hangs and across > 1e-9 * np.linalg.norm(bond):
@@ -228,7 +225,7 @@ def sessile_droplet(
         hold=held,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=_hints(substrate, bond),
+        warnings=hints(substrate, liquid, volume, pull, tuple(bond)),
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
@@ -287,16 +284,15 @@ def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float],
     return (x, y, z + substrate.radius), np.eye(3)
 
 
-def _hints(substrate: Solid, bond: Array) -> tuple[str, ...]:
-    angle, texts = float(np.min(substrate.contact_angle)), []
-    if angle <= np.pi:
-        texts.append(
-            f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
-            "angles are in degrees through the liquid"
+def _bond_numbers(volume: float, liquid: Liquid, acceleration: Array, scale: Scale) -> Array:
+    """(3,) Bond numbers of an acceleration along the scene's axes."""
+    bond = liquid.density * acceleration * scale.length**2 / liquid.surface_tension
+    size = float(np.abs(bond).max())
+    if size and not 1.0 / ROOM < size < ROOM:
+        raise SceneError(
+            f"liquid.volume = {volume:g}, liquid.density = {liquid.density:g}, gravity = "
+            f"{acceleration.tolist()}, liquid.surface_tension = {liquid.surface_tension:g}: their "
+            f"Bond number {size:g} must be 0 or from {1.0 / ROOM:g} to {ROOM:g}; beyond it double "
+            "precision has no room; choose other units"
         )
-    if angle == 180.0 and isinstance(substrate, Plane) and not bond.any():
-        texts.append(
-            "at 180 degrees without gravity a droplet touches its plane in a point: it rolls along "
-            "x and y and lifts off freely"
-        )
-    return tuple(texts)
+    return np.asarray(bond)

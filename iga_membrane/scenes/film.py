@@ -50,6 +50,7 @@ def film_between_rings(
     mesh = asked.mesh()
     if volume is not None and pressure is not None:
         raise SceneError("rings.volume, rings.pressure: both are prescribed; give one of them")
+    Scale(radius, liquid.surface_tension).check_lengths("rings.half_height", half_height)
     # a catenoid collapses round its axis first; a bridge may give way sideways
     film = volume is None and pressure is None
     model = mesh.model or ("eighth" if film else "half")

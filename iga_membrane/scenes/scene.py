@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import array, record, words
+from ..checks import array, name_of, record, shown, words
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
@@ -351,4 +351,18 @@ class Scene:
 
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""
-        return tuple(term.scaled(self.units) for term in self.terms)
+        return tuple(_scaled(term, self.units) for term in self.terms)
+
+
+def _scaled(term: Term, scale: Scale) -> Term:
+    """A term in a scale, or an error that names both."""
+    try:
+        found = term.scaled(scale)
+    except SceneError as error:
+        raise SceneError(
+            f"{name_of(term)}, over the scene's length {scale.length:g} and tension "
+            f"{scale.tension:g}: {error}"
+        ) from error
+    if not isinstance(found, Term):
+        raise SceneError(f"{name_of(term)}.scaled: returned {shown(found)}, expected a Term")
+    return found

@@ -38,6 +38,7 @@ from ..terms import (
     TrimmedContactLine,
     Volume,
 )
+from ..units import implausible
 from .description import described_particle
 from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
 from .moving import moving
@@ -188,6 +189,7 @@ def liquid_sheet(
         surface = start
         check_net(start, _space(particle, boundary, mesh))
     length = 0.5 * size if particle is None else particle.radius
+    Scale(length, gamma).check_lengths("sheet.size", size)
     scene = Scene(
         surface,
         terms,
@@ -201,6 +203,7 @@ def liquid_sheet(
         acceleration=(0.0, 0.0, -gravity),
         liquid_density=liquid.density,
         description=described,
+        warnings=implausible(gravity, gamma, liquid.density, volume),
     )
     if particle is None:
         return scene

@@ -15,6 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
@@ -38,6 +39,8 @@ def _rotation(field: str, value: Any) -> tuple[tuple[float, ...], ...]:
 
 ROOM = 1e150
 """Sizes of the units of a scene: their squares are doubles."""
+FAR = 1e9
+"""Lengths of a scene over its own: a gap there has the rounding 1e-7, as large as tolerances."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +69,28 @@ class Scale:
         for name, size in units.items():
             if not 1.0 / ROOM < size < ROOM:
                 raise SceneError(
-                    f"scale: length = {length:g}, tension = {tension:g}: their {name} = {size:g} "
-                    f"leaves no room in double precision, it must be between {1.0 / ROOM:g} and "
-                    f"{ROOM:g}; choose other units"
+                    f"scale: length = {length:g}, tension (liquid.surface_tension) = {tension:g}: "
+                    f"their {name} = {size:g} must be from {1.0 / ROOM:g} to {ROOM:g}; beyond it "
+                    "double precision has no room; choose other units"
                 )
+        self.check_lengths("scale: origin", self.origin, least=0.0)
+
+    def check_lengths(self, field: str, values: ArrayLike, least: float = 1.0 / FAR) -> None:
+        """Refuse lengths that lose their digits beside the scene's own, or its own beside them.
+
+        Raises
+        ------
+        SceneError
+        """
+        found = np.abs(np.atleast_1d(np.asarray(values, float))) / self.length
+        wrong = found[(found > FAR) | (found < least)]
+        if wrong.size:
+            raise SceneError(
+                f"{field}: {wrong[0] * self.length:g} given, {wrong[0]:.3g} times the scene's own "
+                f"length {self.length:g} (of a droplet the radius of a ball of its volume): must "
+                f"be {least:g} to {FAR:g} times, or double precision cannot tell them apart; "
+                "choose sizes and places nearer to it"
+            )
 
     @property
     def force(self) -> float:
@@ -97,6 +118,8 @@ class Scale:
 
     def local_sphere(self, sphere: Sphere) -> Sphere:
         """A sphere in local, dimensionless coordinates."""
+        self.check_lengths("radius", sphere.radius)
+        self.check_lengths("center", sphere.center, least=0.0)
         x, y, z = (float(c) for c in self.to_local(np.array(sphere.center)))
         return Sphere(sphere.contact_angle, sphere.radius / self.length, (x, y, z))
 
@@ -113,6 +136,7 @@ class Scale:
             case Sphere():
                 return self.local_sphere(solid)
             case SphereLattice():
+                self.check_lengths("substrate.radius", solid.radius)
                 return replace(
                     solid,
                     radius=solid.radius / unit,
@@ -121,6 +145,8 @@ class Scale:
                     base=None if solid.base is None else solid.base / unit,
                 )
             case Spheres():
+                self.check_lengths("substrate.radii", solid.radii)
+                self.check_lengths("substrate.centers", solid.centers, least=0.0)
                 return Spheres(
                     solid.contact_angle,
                     np.asarray(solid.centers) / unit,
