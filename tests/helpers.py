@@ -5,14 +5,17 @@ from __future__ import annotations
 import importlib.util
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import iga_membrane as iga
+from iga_membrane.solver.assembly import Assembly
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 UNIT_VOLUME = 4.0 * np.pi / 3.0
+EPS = np.finfo(float).eps
 MEASURES = ("height", "contact_radius", "p_base", "energy", "A_LG", "A_wet")
 
 
@@ -55,6 +58,22 @@ def droplet_file(contact_angle, bond=0.0, more="", **mesh):
         *lines,
         more,
     ])  # fmt: skip
+
+
+def rounded_by(seed):
+    """``Assembly.system`` as on another processor: forces off by one rounding of their parts, the
+    Hessian by one of its entries, the same ones whenever a state is assembled again."""
+    exact = Assembly.system
+
+    def rounded(self, surface, directions, multipliers):
+        system = exact(self, surface, directions, multipliers)
+        sign = np.random.default_rng(seed).choice([-EPS, EPS], len(system.matrix.data))
+        system.matrix.data *= 1.0 + sign
+        sign = sign[: len(system.gradient)]
+        part = np.abs(system.gradient) + system.scale / np.sqrt(len(system.gradient))
+        return replace(system, gradient=system.gradient + sign * part)
+
+    return rounded
 
 
 def path_file(parameter, values):

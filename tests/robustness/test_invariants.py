@@ -126,7 +126,7 @@ def test_without_compiled_loops_the_answer_is_the_same(monkeypatch):
     plain = iga.solve(scene)
     for name, value in compiled.measures.items():
         assert plain.measures[name] == pytest.approx(value, rel=1e-12), name
-    assert plain.newton_iterations == compiled.newton_iterations
+    assert abs(plain.newton_iterations - compiled.newton_iterations) <= 1
 
 
 def test_missing_compiled_loops_are_told_once(monkeypatch, caplog):

@@ -135,7 +135,7 @@ def test_units_scale_energy_pressure_and_force(seed):
     assert np.array(two.hold_force) / (g * s) == pytest.approx(
         np.array(one.hold_force), rel=1e-10, abs=1e-12
     )
-    assert two.newton_iterations == one.newton_iterations
+    assert abs(two.newton_iterations - one.newton_iterations) <= 1
 
 
 @pytest.mark.parametrize("seed", SEEDS)

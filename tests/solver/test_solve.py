@@ -90,7 +90,7 @@ def test_units_do_not_change_the_digits(length, tension):
             gravity=tension / (density * length**2),
         )
     )
-    assert solution.newton_iterations == base.newton_iterations
+    assert abs(solution.newton_iterations - base.newton_iterations) <= 1
     for name, power in {"height": 1, "contact_radius": 1, "A_LG": 2, "volume": 3}.items():
         assert solution.measures[name] / length**power == pytest.approx(
             base.measures[name], rel=1e-10
