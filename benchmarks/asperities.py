@@ -1,6 +1,6 @@
 """Droplets on asperities at 180 degrees: accuracy, effort; writes docs/results/asperities.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/asperities.py``. Times are CPU seconds of one solve each,
+Run ``python benchmarks/asperities.py``. Times are CPU seconds of one solve each,
 without imports and compilation.
 """
 
@@ -138,7 +138,7 @@ def main() -> None:
     text = [
         "# Contact at 180 degrees on asperities: accuracy and effort",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/asperities.py` on "
+        "Made by `python benchmarks/asperities.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
         "one thread. Surface tension 1; the droplet has volume 4 pi / 3 (R = 1) and Bond number 1. "
         "Asperities are spheres of radius r_s on a square lattice of spacing 4 r_s, their tops in "

@@ -1,6 +1,6 @@
 """The measurements behind three constants of the code; writes docs/results/choices.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/choices.py``.
+Run ``python benchmarks/choices.py``.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from iga_membrane.solver import rows as rows_module
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.solver.linear import Bordered
 from iga_membrane.terms import variations
+from iga_membrane.threads import one_thread
 
 
 def drop(**mesh: object) -> iga.Scene:
@@ -101,12 +102,12 @@ def quadrature() -> list[str]:
     return rows
 
 
+@one_thread
 def main() -> None:
     text = [
         "# Measurements behind constants of the code",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/choices.py`; CPU milliseconds, medians of "
-        "five, one thread.",
+        "Made by `python benchmarks/choices.py`; CPU milliseconds, medians of five, one thread.",
         "",
         "## Dense or sparse factorization (`solver/linear.py`, `DENSE_LIMIT`)",
         "",

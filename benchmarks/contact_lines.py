@@ -1,6 +1,6 @@
 """Contact lines on asperities: accuracy, effort, limits; writes docs/results/contact_lines.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/contact_lines.py``, or with the names of some tables
+Run ``python benchmarks/contact_lines.py``, or with the names of some tables
 (``round square pressure droplet``) to renew only those. Times are CPU seconds of one solve
 each, without imports and compilation.
 """
@@ -200,7 +200,7 @@ def droplets() -> list[str]:
 
 HEAD = """# Contact lines on asperities: accuracy, effort, limits
 
-Made by `OMP_NUM_THREADS=1 python benchmarks/contact_lines.py`, one thread. Surface tension 1,
+Made by `python benchmarks/contact_lines.py`, one thread. Surface tension 1,
 spheres of radius r = 0.05 with their tops in z = 0, degree 2 unless given. CPU seconds are those of
 one solve, stability and audit included.
 

@@ -1,7 +1,7 @@
 """Splines against Lagrange elements: errors, unknowns, CPU seconds; writes
 docs/results/convergence.md and its pictures.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/convergence.py``. References are axisymmetric solutions by
+Run ``python benchmarks/convergence.py``. References are axisymmetric solutions by
 two methods that agree to 2.5e-12; for the rough droplet the finest mesh.
 """
 
@@ -128,7 +128,7 @@ def main() -> None:
     text = [
         "# Splines against Lagrange elements",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/convergence.py` on "
+        "Made by `python benchmarks/convergence.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
         "one thread. Errors are relative; the order in the element size stands in parentheses. "
         f"CPU seconds are medians of {REPEATS} solves from the scene to the result, stability and "

@@ -1,6 +1,6 @@
 """Error against CPU seconds for the drop on a plane; writes docs/results/droplet_on_plane.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/droplet_on_plane.py``. Errors are against the axisymmetric
+Run ``python benchmarks/droplet_on_plane.py``. Errors are against the axisymmetric
 reference, times are medians of several solves without imports and compilation.
 """
 
@@ -90,7 +90,7 @@ def main() -> None:
     text = [
         "# A droplet on a plane: error against CPU seconds",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/droplet_on_plane.py` on "
+        "Made by `python benchmarks/droplet_on_plane.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
         "one thread. Volume 4 pi / 3, surface tension 1. Errors are relative, against the "
         "axisymmetric reference (`iga_membrane/reference`, itself right to 1e-11). CPU seconds are "

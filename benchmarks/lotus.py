@@ -1,6 +1,6 @@
 """Droplets on hundreds to thousands of asperities; writes docs/results/lotus.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/lotus.py``. Times are CPU seconds of one solve each,
+Run ``python benchmarks/lotus.py``. Times are CPU seconds of one solve each,
 without imports and compilation.
 """
 
@@ -128,7 +128,7 @@ def main() -> None:
     page = [
         "# A lotus leaf: thousands of asperities",
         "",
-        f"Made by `OMP_NUM_THREADS=1 python benchmarks/lotus.py` on {time.strftime('%Y-%m-%d')}, "
+        f"Made by `python benchmarks/lotus.py` on {time.strftime('%Y-%m-%d')}, "
         f"Python {platform.python_version()}, numpy {np.__version__}, one thread. Surface tension "
         "1, volume 4 pi / 3 (R = 1), Bond number 1, contact angle 180 degrees; spheres of radius a "
         "quarter of their spacing, tops in z = 0. CPU seconds are those of one solve, stability "

@@ -1,6 +1,6 @@
 """Would the tests notice? Thirty-two faults, each put by hand into a copy of the package.
 
-``OMP_NUM_THREADS=1 python benchmarks/mutants.py`` flips a sign, drops a factor or skips a term of
+``python benchmarks/mutants.py`` flips a sign, drops a factor or skips a term of
 the energies and of the audit, runs the tests that ought to mind, and prints what caught it.
 """
 

@@ -1,6 +1,6 @@
 """The paper's formulation beside the default one; writes docs/results/paper_method.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/paper_method.py``. Errors of droplets are against
+Run ``python benchmarks/paper_method.py``. Errors of droplets are against
 axisymmetric solutions, of sheets against the finest mesh of the default formulation.
 """
 
@@ -129,7 +129,7 @@ def main() -> None:
     text = [
         "# The paper's formulation beside the default one",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/paper_method.py` on "
+        "Made by `python benchmarks/paper_method.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
         "one thread. The paper's formulation (`WholeMembrane`, `solver.contact_line = "
         '"line_load"`) computes the whole membrane with its wetted part, three unknowns per '

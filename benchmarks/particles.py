@@ -1,6 +1,6 @@
 """Particles on droplets and sheets: convergence, where they are solved, pull-off, free droplets.
 
-    OMP_NUM_THREADS=1 python benchmarks/particles.py [converge|agree|free|pull|resting|grid|...]
+    python benchmarks/particles.py [converge|agree|free|pull|resting|grid|...]
 
 Prints the tables of docs/results/particles.md.
 """

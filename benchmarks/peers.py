@@ -1,6 +1,6 @@
 """This package beside Surface Evolver, scikit-fem and nutils; writes docs/results/peers.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/peers.py``. Surface Evolver is looked for on the PATH
+Run ``python benchmarks/peers.py``. Surface Evolver is looked for on the PATH
 (Debian package evolver-nox), the libraries come with the extra ``benchmarks``; what is missing is
 skipped with a word.
 """
@@ -311,7 +311,7 @@ def main() -> None:
     text = [
         "# Beside other programs",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/peers.py` on "
+        "Made by `python benchmarks/peers.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
         "one thread, all in one run. Errors are relative. This package's CPU seconds are medians "
         f"of {REPEATS} solves without imports, stability and audit included; Surface Evolver's are "

@@ -1,6 +1,6 @@
 """The randomized extreme sweep: is an answer ever wrong silently?
 
-``OMP_NUM_THREADS=1 python benchmarks/reliability.py [--seed 1] [--count 300] [--out DIR]`` prints a
+``python benchmarks/reliability.py [--seed 1] [--count 300] [--out DIR]`` prints a
 table; the same call goes on where it was stopped. Scenes and verdicts stand in
 tests/robustness/extreme_scenes.py.
 """

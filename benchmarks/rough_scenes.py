@@ -1,6 +1,6 @@
 """Thirty droplets at 180 degrees on substrates with few or no mirror planes: how each solve ends.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/rough_scenes.py`` (about twenty CPU minutes);
+Run ``python benchmarks/rough_scenes.py`` (about twenty CPU minutes);
 writes docs/results/rough_scenes.md. Default meshes. Hexagonal and square lattices off the droplet's
 middle, lists of spheres at random places with a least distance, of one and of two sizes.
 """

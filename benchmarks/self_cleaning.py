@@ -1,6 +1,6 @@
 """The self-cleaning map on one and two processes, on Dask and on MPI.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/self_cleaning.py``; writes docs/results/self_cleaning.md
+Run ``python benchmarks/self_cleaning.py``; writes docs/results/self_cleaning.md
 and its picture. Needs the extra ``cluster`` and an ``mpiexec``.
 """
 
@@ -86,7 +86,7 @@ def main() -> None:
     text = [
         "# Which particles are lifted",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/self_cleaning.py` on "
+        "Made by `python benchmarks/self_cleaning.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}. "
         "The map alone: `python examples/self_cleaning_map.py`.",
         "",

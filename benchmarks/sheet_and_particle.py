@@ -1,6 +1,6 @@
 """Sheets on a particle: errors, effort, forces; writes docs/results/sheet_and_particle.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/sheet_and_particle.py``. Errors are against the finest
+Run ``python benchmarks/sheet_and_particle.py``. Errors are against the finest
 mesh of each rim, times are medians of three solves without imports and compilation.
 """
 
@@ -225,7 +225,7 @@ def main() -> None:
     text = [
         "# A sheet on a particle: errors, effort, forces",
         "",
-        "Made by `OMP_NUM_THREADS=1 python benchmarks/sheet_and_particle.py` on "
+        "Made by `python benchmarks/sheet_and_particle.py` on "
         f"{time.strftime('%Y-%m-%d')}, Python {platform.python_version()}, numpy {np.__version__}, "
         "one thread. The particle has radius r_p = 1, its top just reaches the undeformed sheet, "
         "whose edge length or diameter is 5 unless said otherwise; surface tension 1, no pressure. "

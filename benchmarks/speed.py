@@ -1,6 +1,6 @@
 """Newton iterations on large patches, and how cost grows; writes docs/results/speed.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/speed.py``.
+Run ``python benchmarks/speed.py``.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from iga_membrane.solver.assembly import Assembly
 from iga_membrane.solver.linear import Bordered
 from iga_membrane.solver.newton import NewtonOptions, newton
 from iga_membrane.terms import variations
+from iga_membrane.threads import one_thread
 
 ROOT = Path(__file__).parents[1]
 FLOOR = {"spines": 18.0, "cartesian": 106.0}
@@ -124,11 +125,12 @@ def growth() -> list[str]:
     return rows
 
 
+@one_thread
 def main() -> None:
     text = [
         "# Newton iterations on large patches",
         "",
-        f"Made by `OMP_NUM_THREADS=1 python benchmarks/speed.py` on {time.strftime('%Y-%m-%d')}, "
+        f"Made by `python benchmarks/speed.py` on {time.strftime('%Y-%m-%d')}, "
         f"Python {platform.python_version()}, numpy {np.__version__}, one thread. A square sheet "
         "under pressure, biquadratic C1 elements, no symmetry: with spines, and with three "
         "unknowns per control point and the stabilization of the paper.",

@@ -1,6 +1,6 @@
 """Stiff and extreme cases: solved, failed by name, or wrong; writes docs/results/stability.md.
 
-Run ``OMP_NUM_THREADS=1 python benchmarks/stability.py``. A cell is wrong if the solve says success
+Run ``python benchmarks/stability.py``. A cell is wrong if the solve says success
 and a measure misses its reference by more than the tolerance of its table.
 """
 
@@ -20,6 +20,7 @@ from iga_membrane.reference import cap_on_plane, drop_on_plane
 from iga_membrane.solver.assembly import Assembly
 from iga_membrane.splines import points_of
 from iga_membrane.surface.ring import axisymmetric, drop_space
+from iga_membrane.threads import one_thread
 
 ROOT = Path(__file__).parents[1]
 VOLUME = 4.0 * np.pi / 3.0
@@ -212,6 +213,7 @@ def load_steps() -> list[str]:
     return table("values", ("difference from direct, iterations", "load steps", "CPU s"), rows)
 
 
+@one_thread
 def main() -> None:
     parts = [
         ("Contact angle and Bond number", "Droplet on a plane, default mesh. Allowed: 1e-3; 1e-2 "
@@ -245,7 +247,7 @@ def main() -> None:
     head = [
         "# Stiff and extreme cases",
         "",
-        f"Made by `OMP_NUM_THREADS=1 python benchmarks/stability.py` on {time.strftime('%Y-%m-%d')}"
+        f"Made by `python benchmarks/stability.py` on {time.strftime('%Y-%m-%d')}"
         f", Python {platform.python_version()}, numpy {np.__version__}, one thread. A cell would "
         "say WRONG if a solve claimed success and missed its reference by more than allowed. "
         f"Solves are interrupted after {LONGEST:g} CPU seconds. In "
