@@ -33,6 +33,11 @@ SCENES = {
 }  # fmt: skip
 
 
+def told(solution):
+    """Measures that there are."""
+    return {name: value for name, value in solution.measures.items() if value is not None}
+
+
 @lru_cache
 def exact(name):
     return iga.solve(SCENES[name](), on_fail="return")
@@ -46,6 +51,5 @@ def test_the_answer_does_not_hang_on_last_digits(name, seed, monkeypatch):
     two = iga.solve(SCENES[name](), on_fail="return")
     assert two.status is one.status
     assert abs(two.newton_iterations - one.newton_iterations) <= 1
-    for measure, value in one.measures.items():
-        assert two.measures[measure] == pytest.approx(value, rel=1e-9, abs=1e-9), measure
+    assert told(two) == pytest.approx(told(one), rel=1e-9, abs=1e-9)
     assert not np.array_equal(two.surface.points, one.surface.points)

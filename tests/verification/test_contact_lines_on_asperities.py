@@ -1,6 +1,6 @@
 """Contact angles at asperities: cells against closed forms, droplets by balances and refinement."""
 
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -76,8 +76,8 @@ def test_a_square_cell_carries_its_pressure_and_converges(place):
 @pytest.mark.parametrize("angle", [pytest.param(120.0, marks=pytest.mark.slow), 150.0])
 def test_beyond_the_largest_pressure_a_cell_is_lost(angle):
     most = largest_pressure(angle)
-    assert iga.solve(cell(angle, 0.99 * most, elements=16)).success
-    lost = iga.solve(cell(angle, 1.02 * most, elements=16), on_fail="return")
+    assert iga.solve(cell(angle, 0.99 * most, elements=10)).success
+    lost = iga.solve(cell(angle, 1.02 * most, elements=10), on_fail="return")
     assert lost.status is iga.Status.LIMIT_POINT
     assert lost.bracket.lo == pytest.approx(most, rel=5e-3)
     assert lost.bracket.hi == pytest.approx(most, rel=5e-3)
@@ -92,6 +92,12 @@ def papers_droplet(angle, elements=None, **lattice):
     )
 
 
+@cache
+def papers_solution(angle):
+    """On the default mesh."""
+    return iga.solve(papers_droplet(angle))
+
+
 def assert_balanced(solution, angle):
     assert solution.contact["support_force"] == pytest.approx(4.0 * np.pi / 3.0, rel=1e-5)
     for asperity in solution.contact["asperities"]:
@@ -99,8 +105,7 @@ def assert_balanced(solution, angle):
 
 
 def test_the_same_droplet_twice_is_the_same_to_the_last_digit():
-    scene = papers_droplet(150.0)
-    assert iga.solve(scene).measures == iga.solve(scene).measures
+    assert iga.solve(papers_droplet(150.0)).measures == papers_solution(150.0).measures
 
 
 @pytest.mark.parametrize(
@@ -108,7 +113,7 @@ def test_the_same_droplet_twice_is_the_same_to_the_last_digit():
     [150.0, *(pytest.param(angle, marks=pytest.mark.slow) for angle in (160.0, 135.0, 120.0))],
 )
 def test_the_papers_droplet_on_its_default_mesh_is_converged(angle):
-    coarse, fine = iga.solve(papers_droplet(angle)), iga.solve(papers_droplet(angle, elements=96))
+    coarse, fine = papers_solution(angle), iga.solve(papers_droplet(angle, elements=96))
     for solution in (coarse, fine):
         assert_balanced(solution, angle)
     assert coarse.contact["wet_solids"] == fine.contact["wet_solids"]
@@ -159,9 +164,12 @@ def test_adhesion_near_180_degrees_agrees_with_the_closed_form(angle):
     assert max(found.values()) < 1e-6
 
 
-def test_angles_near_180_degrees_tend_to_exact_contact():
-    whole = iga.solve(papers_droplet(180.0)).measures
-    for angle in (176.0, 177.0, 178.0, 179.0):
+@pytest.mark.parametrize(
+    "angles", [(176.0, 178.0), pytest.param((177.0, 179.0), marks=pytest.mark.slow)]
+)
+def test_angles_near_180_degrees_tend_to_exact_contact(angles):
+    whole = papers_solution(180.0).measures
+    for angle in angles:
         near = iga.solve(papers_droplet(angle)).measures
         # wetting gains int A d cos(theta); A grows like the square root of 1 + cos(theta)
         area = (whole["A_wet"] + 2.0 * near["A_wet"]) / 3.0
@@ -189,7 +197,7 @@ def test_a_square_cell_is_lost_at_the_pressure_of_a_round_line(angle, most):
 @pytest.mark.slow
 def test_the_liquid_that_comes_down_to_the_base_is_named():
     """Wenzel onset: the membrane between the asperities touches the plane under them."""
-    free = iga.solve(papers_droplet(150.0))
+    free = papers_solution(150.0)
     x = free.surface.at(
         np.stack(np.meshgrid(*[np.linspace(-0.3, 0.3, 241)] * 2, indexing="ij"), axis=-1), 1
     ).position

@@ -52,6 +52,14 @@ def test_the_papers_droplet_through_the_command_line(tmp_path):
     assert result["contact"]["wet_solids"] == 45
 
 
+def test_a_finer_mesh_is_nearer_to_the_limit():
+    coarse, fine = rough(elements=48), rough()
+    for name, final in (("height", HEIGHT), ("energy", ENERGY), ("p_base", PRESSURE)):
+        errors = [abs(s.measures[name] / final - 1.0) for s in (coarse, fine)]
+        assert errors[1] < 0.5 * errors[0], name
+        assert errors[1] < 3e-4, name
+
+
 def test_the_papers_droplet():
     solution = rough()
     check_forces(solution)
@@ -71,6 +79,7 @@ def test_the_papers_droplet():
     assert m["A_wet"] == pytest.approx(caps.sum(), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_height_energy_and_forces_settle_with_the_mesh():
     coarse, middle, fine = (rough(elements=n) for n in (48, 75, 125))
     for name, final in (("height", HEIGHT), ("energy", ENERGY), ("p_base", PRESSURE)):
@@ -86,7 +95,7 @@ def test_height_energy_and_forces_settle_with_the_mesh():
     assert missing[2] < 1e-6
 
 
-@pytest.mark.parametrize("start", ["above", "touching"])
+@pytest.mark.parametrize("start", ["above", pytest.param("touching", marks=pytest.mark.slow)])
 def test_every_start_ends_in_the_same_state(start):
     base, other = rough(), rough(start=start)
     assert other.success
@@ -107,7 +116,7 @@ def test_a_penalty_sinks_by_the_pressure_over_it():
     assert "penetration_tolerance" in refused.message
 
 
-@pytest.mark.parametrize("penalty", [5e4, 1e6, 1e9])
+@pytest.mark.parametrize("penalty", [5e4, pytest.param(1e6, marks=pytest.mark.slow), 1e9])
 def test_a_hard_penalty_sinks_by_the_pressure_over_it_on_the_same_mesh(penalty):
     solution = rough(penalty=penalty, penetration_tolerance=0.2)
     assert solution.success, solution.message

@@ -35,14 +35,14 @@ def test_published_drops_through_the_command_line(case, tmp_path):
 
 FAMILY = [(angle, bond) for bond in (0, 0.05, 0.7, 5, 30, 100)
           for angle in (3, 10, 45, 90, 135, 160, 175, 177, 179)]  # fmt: skip
-QUICK = (3, 90, 179)
+QUICK = {30: (3, 90), 100: (90, 179)}
 """Angles at which heavy droplets are among the default tests."""
 
 
 @pytest.mark.parametrize(
     ("angle", "bond"),
     [
-        pytest.param(*one, marks=[pytest.mark.slow] if one[1] >= 30 and one[0] not in QUICK else [])
+        pytest.param(*one, marks=[] if one[0] in QUICK.get(one[1], one) else [pytest.mark.slow])
         for one in FAMILY
     ],
 )

@@ -27,7 +27,13 @@ def sheet(angle, d=0.0, *, bond=0.0, weight=False, density=1.0, **options):
     return iga.liquid_sheet(particle, gravity=bond, liquid_weight=weight, **options)
 
 
-@pytest.mark.parametrize("case", CASES, ids=case_id)
+def quick_or_slow(case):
+    """A parameter; of the limits that a path has to find one is among the default tests."""
+    slow = not case["exists"] and case["family"] != "F2"
+    return pytest.param(case, marks=[pytest.mark.slow] if slow else [], id=case_id(case))
+
+
+@pytest.mark.parametrize("case", map(quick_or_slow, CASES))
 def test_sheets_through_the_command_line(case, tmp_path):
     p = case["params"]
     scene = tmp_path / "scene.toml"
