@@ -263,11 +263,7 @@ def sessile_droplet(
     def edge_at(radius: float) -> Scene:
         return replace(scene, surface=with_rim(built.surface, radius, scale))
 
-    def below(angle: float) -> Scene:
-        assert isinstance(substrate, Plane)
-        return again(substrate=replace(substrate, contact_angle=angle))
-
-    return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, below))
+    return replace(scene, free_edge=FreeEdge(edge_at, rim_radius))
 
 
 def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:

@@ -82,12 +82,10 @@ class FreeEdge:
     scene_at : coordinate of the edge on the solid, a radius or an angle, to a scene whose edge is
         fixed there.
     place_of : the coordinate of a surface's edge, in the scene's scale.
-    nearby : contact angle below 180 degrees to a scene of the same space with a contact line.
     """
 
     scene_at: Callable[[float], Scene] = field(repr=False)
     place_of: Callable[[Surface], float] = field(repr=False)
-    nearby: Callable[[float], Scene] = field(repr=False)
 
 
 @dataclass(frozen=True)

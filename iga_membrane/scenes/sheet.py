@@ -5,7 +5,6 @@ The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -208,14 +207,14 @@ def liquid_sheet(
     if particle is None:
         return scene
     if tangent:
-        scene = replace(scene, free_edge=_free_edge(scene, again))
+        scene = replace(scene, free_edge=_free_edge(scene))
     liquid_above = np.array([[0.0, 0.0, 1.0]])
     return moving(
         scene, [particle], liquid_above, gamma, lambda at: again(particle=at[0], start=start)
     )
 
 
-def _free_edge(scene: Scene, again: Callable[..., Scene]) -> FreeEdge:
+def _free_edge(scene: Scene) -> FreeEdge:
     """The way to the edge on a particle at 180 degrees."""
     particle = scene.substrate
     assert isinstance(particle, Sphere)
@@ -224,11 +223,7 @@ def _free_edge(scene: Scene, again: Callable[..., Scene]) -> FreeEdge:
     def edge_at(polar: float) -> Scene:
         return replace(scene, surface=_with_edge(scene.surface, particle, polar))
 
-    return FreeEdge(
-        edge_at,
-        lambda at: _edge_polar(at, ball),
-        lambda angle: again(particle=replace(particle, contact_angle=angle)),
-    )
+    return FreeEdge(edge_at, lambda at: _edge_polar(at, ball))
 
 
 def _edge_polar(surface: Surface, ball: Sphere) -> float:

@@ -20,12 +20,12 @@ from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .liquid import Liquid, Mesh
 from .question import BALL, Foot, Question, sector_of
 from .start import (
-    STEEPEST,
     Pancake,
     check_clear,
     check_net,
     check_turns,
     drop_on_sphere,
+    flat_drop,
     least_energy_pancake,
     rounded,
 )
@@ -70,13 +70,20 @@ def on_the_plane(parts: Question) -> Foot:
         )
     if not bond:
         return _on_a_point(parts, mesh, sector)
-    foot = rest_of(Plane(STEEPEST), parts.liquid, scale, bond)
-    length = foot.pancake.length
-    rim = rounded(bond, BALL).foot
-    # the foot bends over its own radius or the capillary length, whichever is shorter
-    first = min(3.5 / (np.sqrt(bond) * length), (4.0 * rim / length) ** 0.75)
-    grading = Grading(float(min(1.0, first)))
-    start = _start(foot, mesh, grading, scale)
+    drop = (flat_drop if bond > ROUND else rounded)(bond, BALL)
+    walked, r, z = drop.meridian()
+    length = float(walked[-1])
+    # the membrane bends over the foot's own radius, beyond which it is a ball, or the capillary
+    # length, whichever is shorter
+    bends, foot = min(1.0, 3.5 / (np.sqrt(bond) * length)), 8.0 * drop.foot / length
+    grading = Grading(float(foot), EVEN) if foot < bends else Grading(float(bends))
+
+    def profile(t: Array) -> tuple[Array, Array, Array]:
+        at = length * grading.fraction(t)
+        return np.interp(at, walked, r), np.interp(at, walked, z), -length * grading.slope(t)
+
+    local = axisymmetric(drop_space(mesh.space, mesh.degree, mesh.elements, angle=np.pi), profile)
+    start = local.moved(scale.to_world(local.points))
     line = PlaneContactLine(gamma, 180.0)
     return Foot(start, sector, mesh, [line], [Fixed("xi2=0")], grading, tangent=True)
 
@@ -94,6 +101,14 @@ def _on_a_point(parts: Question, mesh: Mesh, sector: Sector) -> Foot:
     return Foot(start, sector, mesh, [rest.line], [Fixed("xi2=0")], Grading())
 
 
+ROUND = 1e-3
+"""Bond number up to which a drop at 180 degrees begins as a ball with the foot that its weight asks
+for, right to 2e-6; beyond, as the solution of its ordinary differential equations (30 ms)."""
+EVEN = 0.5
+"""Part of the steps along a meridian that are equal, beside a foot smaller than the drop. At Bond
+numbers of 1e-6 to 1e-2 height and pressure are right to 1e-7 on the default mesh with 0.4 and 0.5,
+to 1e-6 with 0.3, to 1e-4 if steps grow all the way. First steps of 4 to 12 feet over the elements
+are as good."""
 POINT = 0.01
 """Degrees by which the membrane at the rim of that hole misses 180: the sphere's radius is right to
 1e-15."""

@@ -113,6 +113,18 @@ class FlatDrop:
     pressure: float
     foot: float
 
+    def meridian(self) -> tuple[Array, Array, Array]:
+        """Arc length, radius and height from the rim of the foot, which it leaves at the foot's
+        own radius, to the axis."""
+        above = self.r >= self.foot
+        above |= self.z > 0.5 * self.z.max()
+        r = np.concatenate([[self.foot], self.r[above], [0.0]])
+        z = np.concatenate([[0.0], self.z[above], self.z[-1:]])
+        z = z - z[1] * (1.0 - z / z[-1])
+        z[0] = 0.0
+        walked = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(r), np.diff(z)))])
+        return walked, r, z
+
 
 def flat_drop(bond: float, volume: float) -> FlatDrop:
     """The drop at 180 degrees on a plane, by Young and Laplace's equation from its top.
@@ -148,7 +160,7 @@ def flat_drop(bond: float, volume: float) -> FlatDrop:
         start = [first, 0.25 * top * first**2, 0.5 * top * first, 0.0]
         longest = 1e3 * (1.0 + bond**-0.5)
         return solve_ivp(rates, (0.0, longest), start, events=closed, dense_output=dense,
-                         rtol=1e-8, atol=1e-12)  # fmt: skip
+                         method="DOP853", rtol=1e-8, atol=1e-12)  # fmt: skip
 
     def missing(log: float) -> float:
         return float(np.log(path(log).y[3, -1] / volume))
@@ -159,7 +171,10 @@ def flat_drop(bond: float, volume: float) -> FlatDrop:
         low -= 1.0
     found = path(float(brentq(missing, low, ball + 0.7, rtol=1e-9)), dense=True)
     r, depth, turn, _ = found.sol(np.linspace(found.t[-1], 0.0, 2001))
-    return FlatDrop(r, depth[0] - depth, turn, top + bond * float(depth[0]), float(r[0]))
+    pressure = top + bond * float(depth[0])
+    # the weight over the pressure: a small foot has lost its digits where the path ends
+    foot = float(np.sqrt(bond * volume / (np.pi * pressure)))
+    return FlatDrop(r, depth[0] - depth, turn, pressure, foot)
 
 
 def rounded(bond: float, volume: float) -> FlatDrop:

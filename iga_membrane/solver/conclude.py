@@ -68,6 +68,8 @@ def conclude(
     surface, multipliers = result.surface, result.multipliers
     verdict, checked, kind, doubt = None, None, None, ""
     status, message = result.status, result.message
+    if status is Status.TOPOLOGY_CHANGE:
+        kind = "touches_in_a_point"  # the edge at 180 degrees has closed
     if status in REMEDY:
         message = f"{message}: {REMEDY[status]}{rolling(scene)}"
     inside = volume(assembly, surface)

@@ -19,7 +19,7 @@ from .conclude import Outcome, conclude
 from .free_edge import tangent_edge
 from .load_stepping import LoadPath, LoadStep, load_stepping
 from .moving import settled
-from .newton import NewtonOptions, NewtonResult, newton
+from .newton import NewtonOptions, newton
 from .options import SolverOptions
 from .predictor import first, settings_of
 from .quasi_static import quasi_static
@@ -230,13 +230,7 @@ def _iterate(
     if scene.motion == "cartesian":
         return Outcome(scene, *quasi_static(scene, assembly, settings, report))
     if scene.free_edge is not None:
-
-        def find(near: Scene) -> NewtonResult:
-            lines = Assembly(near, options.quadrature)
-            own = replace(options, start=None, checkpoint=None)
-            return _iterate(near, lines, settings, own, report).result
-
-        found, state = tangent_edge(scene.free_edge, assembly, settings, find)
+        found, state = tangent_edge(scene, scene.free_edge, assembly, settings)
         return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
     if scene.ramp is not None and scene.ramp.only:
         path = _stepped(scene, assembly, settings, options, report)

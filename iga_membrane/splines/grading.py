@@ -16,43 +16,60 @@ from ..checks import POSITIVE
 @dataclass(frozen=True)
 @checked(first=POSITIVE)
 class Grading:
-    """Smooth map ``s(t) = (exp(a t) - 1) / (exp(a) - 1)`` of [0, 1] to itself.
+    """Smooth map of [0, 1] to itself with ``s' ~ 1 / (exp(-a t) + exp(-a (1 - even)))``.
 
-    Analytic, so splines on uniform knots in ``t`` resolve a boundary layer at ``s = 0`` without
-    losing their order.
+    Steps grow from ``s = 0`` on, and are equal over the last part of them: a layer much narrower
+    than the rest does not make that coarse. Without such a part it is
+    ``s(t) = (exp(a t) - 1) / (exp(a) - 1)``. Analytic, so splines on uniform knots in ``t`` resolve
+    a boundary layer at ``s = 0`` without losing their order.
 
     Attributes
     ----------
     first : ``s'(0)``, the length of the first of many equal steps over the mean; 1 is uniform.
+    even : part of the steps that are equal, in [0, 1).
     """
 
     first: float = 1.0
+    even: float = 0.0
 
     @cached_property
     def rate(self) -> float:
-        """The exponent ``a``: ``a / (exp(a) - 1) = first``."""
+        """The exponent ``a``, for which ``s'(0)`` is ``first``."""
+        from scipy.optimize import brentq
+
         if self.first >= 1.0:
             return 0.0
-        a = 2.0 * np.log(1.0 / self.first) + 1e-3
-        for _ in range(50):
-            # Newton on the logarithm of both sides, which is concave and falling
-            value = np.log(a) - np.log(np.expm1(a)) - np.log(self.first)
-            step = value / (1.0 / a + 1.0 / np.expm1(-a))
-            a = max(a - step, 0.1 * a)
-            if abs(step) <= 1e-14 * a:
-                break
-        return float(a)
+
+        def missing(a: float) -> float:
+            return float(np.log(self._slope(np.array(0.0), a)) - np.log(self.first))
+
+        most = (2.0 * np.log(1.0 / self.first) + 2.0) / (1.0 - self.even)
+        return float(brentq(missing, 1e-12, most, xtol=1e-15, rtol=1e-14))
 
     def fraction(self, t: ArrayLike) -> Array:
         """``s(t)``"""
         t = np.asarray(t, float)
-        if not self.rate:
-            return t.copy()
-        return np.asarray(np.expm1(self.rate * t) / np.expm1(self.rate))
+        return self._fraction(t, self.rate) if self.rate else t.copy()
 
     def slope(self, t: ArrayLike) -> Array:
         """``ds/dt``"""
         t = np.asarray(t, float)
-        if not self.rate:
-            return np.ones_like(t)
-        return np.asarray(self.rate * np.exp(self.rate * t) / np.expm1(self.rate))
+        return self._slope(t, self.rate) if self.rate else np.ones_like(t)
+
+    def _walked(self, t: Array, a: float) -> Array:
+        """``s(t)`` up to a factor."""
+        if not self.even:
+            return np.asarray(np.expm1(a * t))
+        turn = np.exp(-a * (1.0 - self.even))
+        # log(1 + turn exp(a t)) - log(1 + turn)
+        return np.asarray(np.log1p(turn * np.expm1(a * t) / (1.0 + turn)))
+
+    def _fraction(self, t: Array, a: float) -> Array:
+        return np.asarray(self._walked(t, a) / self._walked(np.array(1.0), a))
+
+    def _slope(self, t: Array, a: float) -> Array:
+        rise = a * np.exp(a * t)
+        if self.even:
+            turn = np.exp(-a * (1.0 - self.even))
+            rise = rise * turn / (1.0 + turn * np.exp(a * t))
+        return np.asarray(rise / self._walked(np.array(1.0), a))

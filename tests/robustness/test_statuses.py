@@ -43,7 +43,7 @@ ENDS = {
     "CONVERGED_MARGINAL": (unheld_droplet, {}),
     "LIMIT_POINT": (overfull_cap, {}),
     "NO_EQUILIBRIUM": (leaning, {}),
-    "TOPOLOGY_CHANGE": (lambda: droplet(180, 1e-6), {}),
+    "TOPOLOGY_CHANGE": (lambda: droplet(180, 0.0), {}),
     "STALLED": (lambda: droplet(120, 1.0, elements=8), {"quadrature": 1}),
     "MAX_ITER": (lambda: droplet(150, 20.0, elements=8), {"max_iterations": 2}),
     "LINEAR_SOLVE_FAILED": (

@@ -41,12 +41,19 @@ def test_a_spline_needs_c1(degree):
         bspline_basis(open_knots([0, 1, 2], degree), degree)
 
 
-@pytest.mark.parametrize("first", [1.0, 0.5, 0.1, 1e-3])
-def test_grading_has_the_first_step_asked_for(first):
-    grading = Grading(first)
+@pytest.mark.parametrize("even", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("first", [1.0, 0.5, 0.1, 1e-3, 1e-6])
+def test_grading_has_the_first_step_asked_for(first, even):
+    grading = Grading(first, even)
     assert grading.fraction([0.0, 1.0]) == pytest.approx([0.0, 1.0], abs=1e-15)
     assert grading.slope(0.0) == pytest.approx(first, rel=1e-12)
     h = 1e-6
     t = np.linspace(0.1, 0.9, 9)
     difference = (grading.fraction(t + h) - grading.fraction(t - h)) / (2 * h)
     assert grading.slope(t) == pytest.approx(difference, rel=1e-8)
+
+
+def test_a_grading_with_equal_steps_does_not_make_the_rest_coarse():
+    growing, even = (Grading(1e-4, part).slope(np.linspace(0.6, 1.0, 5)) for part in (0.0, 0.5))
+    assert even == pytest.approx(2.0, rel=0.2)
+    assert growing[-1] > 10.0
