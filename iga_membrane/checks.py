@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
+from .deadline import OutOfTime
 from .errors import GeometryError, OutputError, SceneError, SolveError, StateError
 
 Rule = Callable[[str, Any], Any]
@@ -289,17 +290,22 @@ def name_of(given: Any) -> str:
 
 
 def called(call: Any, *given: Any) -> Any:
-    """What a function of the user's returns; an error in it, but for ours, blames it by its
-    name."""
+    """What a function of the user's returns; an error in it blames it by its name."""
     try:
         return call(*given)
-    except (SceneError, GeometryError, OutputError, StateError, SolveError):
+    except SceneError as error:
+        raise SceneError(f"{name_of(call)}({_shown(given)}): {error}") from error
+    except (GeometryError, OutputError, StateError, SolveError, OutOfTime, MemoryError):
         raise
     except Exception as error:
         raise SceneError(
-            f"{name_of(call)}({', '.join(map(shown, given))}): raised {type(error).__name__}: "
-            f"{error}; mend the function"
+            f"{name_of(call)}({_shown(given)}): raised {type(error).__name__}: {error}; mend the "
+            "function"
         ) from error
+
+
+def _shown(given: tuple[Any, ...]) -> str:
+    return ", ".join(map(shown, given))
 
 
 def answer_of(

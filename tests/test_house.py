@@ -13,7 +13,7 @@ ROOT = Path(iga_membrane.__file__).parent
 FLOORS = {
     "arrays": 0, "errors": 0, "checks": 0, "deadline": 0, "_kernels": 0,
     "arguments": 0, "fields": 0, "files": 0, "records": 0, "progress": 0, "tables": 0, "units": 0,
-    "threads": 0, "optional": 0, "output_folder": 0,
+    "threads": 0, "own": 0, "optional": 0, "output_folder": 0,
     "splines": 1, "solids": 1,
     "surface": 2,
     "terms": 3,
@@ -63,8 +63,12 @@ def test_imports_run_downward(path):
 
 @pytest.mark.parametrize(
     ("library", "allowed"),
-    [("numba", ("_kernels.py",)), ("geomdl", ("surface/exchange.py",)), ("pyvista", ("view/",)),
-     ("cloudpickle", ("analysis/portable.py",))],
+    [
+        ("numba", ("_kernels.py",)),
+        ("geomdl", ("surface/exchange.py",)),
+        ("pyvista", ("view/",)),
+        ("cloudpickle", ("analysis/portable.py",)),
+    ],
 )
 def test_optional_library_is_named_in_one_place(library, allowed):
     for path in FILES:

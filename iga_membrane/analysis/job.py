@@ -159,9 +159,7 @@ class Job:
 
 
 @one_thread  # the making of the scene too
-def solve_point(
-    scene_of: Portable, point: dict[str, Any], options: SolverOptions
-) -> Record:
+def solve_point(scene_of: Portable, point: dict[str, Any], options: SolverOptions) -> Record:
     """One point, in a worker: its result, or why there is none.
 
     Raises

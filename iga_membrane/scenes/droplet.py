@@ -12,7 +12,9 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import either, instance, listed, number, vector, words
 from ..errors import SceneError
+from ..own import is_own
 from ..solids import Plane, Solid, Sphere
+from ..solids.own import check_solid
 from ..surface.surface import Surface
 from ..terms import (
     Centroid,
@@ -142,6 +144,8 @@ def sessile_droplet(
     scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
     bond = _bond_numbers(volume, liquid, local, scale)
     scale.local_solid(substrate)  # refuses sizes that it cannot hold
+    if is_own(substrate):
+        check_solid(substrate, origin, length)
     across = float(np.linalg.norm(bond[:2]))
     hangs = asked_substrate is None and not bridges and hold == "none"
     if hangs and across > 1e-9 * np.linalg.norm(bond):

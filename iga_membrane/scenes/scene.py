@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import array, name_of, record, shown, words
+from ..checks import array, record, words
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
@@ -32,6 +32,7 @@ from ..terms import (
     Term,
     TrimmedContactLine,
 )
+from ..terms.own import scaled_term
 
 
 @dataclass(frozen=True)
@@ -349,18 +350,4 @@ class Scene:
 
     def local_terms(self) -> tuple[Term, ...]:
         """The terms in the scene's scale and frame."""
-        return tuple(_scaled(term, self.units) for term in self.terms)
-
-
-def _scaled(term: Term, scale: Scale) -> Term:
-    """A term in a scale, or an error that names both."""
-    try:
-        found = term.scaled(scale)
-    except SceneError as error:
-        raise SceneError(
-            f"{name_of(term)}, over the scene's length {scale.length:g} and tension "
-            f"{scale.tension:g}: {error}"
-        ) from error
-    if not isinstance(found, Term):
-        raise SceneError(f"{name_of(term)}.scaled: returned {shown(found)}, expected a Term")
-    return found
+        return tuple(scaled_term(term, self.units) for term in self.terms)

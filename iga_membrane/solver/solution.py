@@ -13,6 +13,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import integer, items, mapping, real
+from ..own import complaints
 from ..scenes.scene import Scene
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
@@ -239,6 +240,14 @@ class Solution:
         from ..view.tables import field_dataset
 
         return field_dataset(self, resolution)
+
+
+def blamed(solution: Solution) -> Solution:
+    """A solution that is no success, with what was noted of the user's own functions."""
+    noted = complaints()
+    if solution.success or not noted or noted in solution.message:
+        return solution
+    return replace(solution, message=solution.message + noted)
 
 
 def with_effort(solution: Solution, attempts: Sequence[Solution]) -> Solution:

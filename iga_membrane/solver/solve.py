@@ -12,7 +12,9 @@ import numpy as np
 
 from ..arguments import checked
 from ..errors import SceneError, SolveError
+from ..own import begin
 from ..scenes.scene import Scene
+from ..terms.own import check_own_terms
 from ..threads import one_thread
 from .assembly import Assembly
 from .conclude import Outcome, conclude
@@ -24,7 +26,7 @@ from .options import SolverOptions
 from .predictor import first, settings_of
 from .quasi_static import quasi_static
 from .saddle import check_followed, followed
-from .solution import Solution, with_effort
+from .solution import Solution, blamed, with_effort
 from .state import fits, journal_of, start_surface
 from .status import Status
 from .trace import walk
@@ -64,6 +66,8 @@ def solve(
         If the status is not ``CONVERGED_STABLE`` and ``on_fail`` is "raise".
     """
     options = SolverOptions() if options is None else options
+    begin()
+    check_own_terms(scene.local_terms(), scene.local_surface(), scene.units)
     options.check_folder()
     if options.follow_instability:
         check_followed(scene)
@@ -192,6 +196,7 @@ def _stepped(
 
 def _delivered(solution: Solution, on_fail: str) -> Solution:
     log.debug("%s: %s", solution.status.name, solution.message)
+    solution = blamed(solution)
     if not solution.success and on_fail == "raise":
         raise SolveError(f"{solution.status.name}: {solution.message}", solution)
     return solution

@@ -11,9 +11,11 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import called, path_values
 from ..errors import SceneError, SolveError, StateError
+from ..own import begin
 from ..scenes.scene import Ramp, Scene
 from ..tables import column, dataframe, dataset
 from ..terms import Contact, TrimmedContactLine
+from ..terms.own import check_own_terms
 from ..threads import one_thread
 from .assembly import Assembly
 from .conclude import Outcome, conclude
@@ -21,7 +23,7 @@ from .load_stepping import Bracket, LoadStep, load_stepping
 from .newton import NewtonResult
 from .options import SolverOptions
 from .predictor import first, settings_of
-from .solution import Solution
+from .solution import Solution, blamed
 from .state import journal_of
 from .status import Status
 
@@ -124,9 +126,12 @@ def trace(
     ramp = Ramp(parameter, asked, lambda value: called(scene_at, value), asked=True)
     options = SolverOptions() if options is None else options
     options.check_folder()
+    begin()
+    first_scene = ramp(0.0)
+    check_own_terms(first_scene.local_terms(), first_scene.local_surface(), first_scene.units)
     found = walk(ramp, options, report)
     reached = [s for s in found if s.success]
-    path = Path(parameter, asked[: len(reached)], reached, found[-1])
+    path = Path(parameter, asked[: len(reached)], reached, blamed(found[-1]))
     if not path.success and on_fail == "raise":
         raise SolveError(f"{path.end.status.name}: {path.end.message}", path.end)
     return path

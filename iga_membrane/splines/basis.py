@@ -338,6 +338,13 @@ def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int])
             f"discretization.space = {name}: its elements reach from {basis.breaks[0]:g} to "
             f"{basis.breaks[-1]:g}, a meridian from 0 to 1 is needed"
         )
+    total = basis.operators.sum(axis=1)
+    if np.abs(total - 1.0).max() > 1e-9:
+        raise SceneError(
+            f"discretization.space = {name}: its functions add up to {total.min():.6g} to "
+            f"{total.max():.6g}, 1 is needed: the functions (columns of operators) must add up"
+        )
+    _check_continuity(name, basis)
     ends = basis.matrix([0.0, 1.0])
     if not (np.isclose(ends[0, 0], 1.0) and np.isclose(ends[1, -1], 1.0)):
         raise SceneError(
@@ -345,6 +352,26 @@ def _own_basis(kind: BasisOf, elements: int, degree: int, joints: Sequence[int])
             "those of a clamped knot vector are"
         )
     return basis
+
+
+def _check_continuity(name: str, basis: Basis) -> None:
+    """Refuse a basis of the user's that is less smooth than it says."""
+    inner = np.arange(basis.elements - 1)
+    for order in range(min(basis.continuity, 1) + 1):
+        sides = []
+        for elements, end in ((inner, 1.0), (inner + 1, 0.0)):
+            values = basis.inside(elements, np.full((len(inner), 1), end), order)[:, 0]
+            side = np.zeros((len(inner), basis.count))
+            np.put_along_axis(side, basis.functions[elements], values, axis=1)
+            sides.append(side)
+        jump = np.abs(sides[1] - sides[0])
+        if len(inner) and jump.max() > 1e-8 * np.abs(sides).max():
+            k = int(np.argmax(jump.max(axis=1)))
+            raise SceneError(
+                f"discretization.space = {name}: it says continuity {basis.continuity}, but its "
+                f"derivative {order} jumps by {jump.max():.3g} at {basis.breaks[k + 1]:g}; mend "
+                "operators or functions"
+            )
 
 
 @checked(kind=words(*POLYNOMIALS), elements=ELEMENTS, degree=DEGREE, length=POSITIVE)

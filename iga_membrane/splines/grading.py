@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import POSITIVE
+from ..checks import POSITIVE, number
 
 
 @dataclass(frozen=True)
-@checked(first=POSITIVE)
+@checked(first=POSITIVE, even=partial(number, least=0.0, most=0.99))
 class Grading:
     """Smooth map of [0, 1] to itself with ``s' ~ 1 / (exp(-a t) + exp(-a (1 - even)))``.
 
@@ -26,7 +26,7 @@ class Grading:
     Attributes
     ----------
     first : ``s'(0)``, the length of the first of many equal steps over the mean; 1 is uniform.
-    even : part of the steps that are equal, in [0, 1).
+    even : part of the steps that are equal, 0 to 0.99.
     """
 
     first: float = 1.0

@@ -10,6 +10,8 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
+from ..checks import answer_of, called
+from ..own import note_bad
 from ..solids import Nearest, Solid
 from ..splines import Table
 from . import variations as vary
@@ -96,7 +98,12 @@ class LocalGap(Term):
         """The law at local points (..., 3)."""
         unit = self.scale.length
         found = LocalSolid(self.term.solid, self.scale).nearest(points)
-        f, slope, curvature = self.term.law(found.gap * unit)
+        gap, law = found.gap * unit, self.term.law
+        names = ("f", "slope", "curvature")
+        answers = answer_of(law, called(law, gap), names, gap.shape, finite=False)
+        for name, values in zip(names, answers, strict=True):
+            note_bad(law, name, values, gap, "gap")
+        f, slope, curvature = answers
         per = 1.0 / self.scale.tension
         return Law(f * per, slope * (unit * per), curvature * (unit**2 * per), found)
 

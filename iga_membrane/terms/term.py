@@ -22,6 +22,7 @@ from ..arrays import Array, Index
 from ..checks import POSITIVE, array, items, real, refusal
 from ..errors import SceneError
 from ..solids import Nearest, Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.own import nearest_of
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
@@ -183,7 +184,7 @@ class LocalSolid:
         return self.solid.scale / self.view.length
 
     def nearest(self, points: Array) -> Nearest:
-        at = self.solid.nearest(self.view.to_world(points))
+        at = nearest_of(self.solid, self.view.to_world(points))
         unit, axes = self.view.length, self.view.axes
         ridge = None if at.ridge is None else at.ridge @ axes * np.sqrt(unit)
         return Nearest(at.gap / unit, at.normal @ axes, at.bend * unit, at.which, ridge)

@@ -370,6 +370,7 @@ TAKES = {
         Solution.lambda_min Solution.volume_error
     """,
     "half": """
+        Grading.even
         SolverOptions.min_load_step critical_value.tolerance
     """,
     "None, -1": """
