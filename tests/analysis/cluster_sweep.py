@@ -15,7 +15,7 @@ class OnOneThread(Deadly):
     """Dies once at one angle; not built by a worker whose BLAS runs on several threads."""
 
     def __init__(self, deadly, folder):
-        super().__init__(deadly, folder)
+        super().__init__(deadly, folder, 1)
         self.caller = os.getpid()
 
     def __call__(self, angle):
