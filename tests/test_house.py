@@ -91,6 +91,20 @@ def test_bare_import_loads_no_heavy_library():
     assert run.stdout.strip() == "[]"
 
 
+def test_a_plain_droplet_is_solved_without_a_heavy_library():
+    """Each takes longer to load than the droplet to solve, in every worker of a sweep again."""
+    code = (
+        "import sys, iga_membrane as iga; mesh = iga.Discretization(elements=8);"
+        "plane = iga.Plane(contact_angle=120);"
+        "drop = iga.sessile_droplet(plane, volume=1.0, gravity=9.0, discretization=mesh);"
+        "assert iga.solve(drop).success; heavy = {'vtk', 'vtkmodules', 'pyvista', 'matplotlib', "
+        "'numba', 'geomdl', 'scipy.optimize', 'scipy.interpolate'} & set(sys.modules);"
+        "print(sorted(heavy))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+
+
 def test_every_public_name_loads():
     for name in iga_membrane.__all__:
         assert getattr(iga_membrane, name) is not None
