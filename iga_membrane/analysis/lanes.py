@@ -154,11 +154,13 @@ class _Worker:
             theirs.close()
         try:
             self._answer(STARTING)
-        except WorkerLostError as error:
+        except WorkerLostError:
+            code = self.process.exitcode
             self.end()
+            how = f"was not ready within {STARTING:g} s" if code is None else f"ended ({code=})"
             raise UnusableWorkersError(
-                f"a worker ended before it took any work ({error}; what it wrote stands above); "
-                + GUARD
+                f"workers do not start: one {how} before it took any work; what it wrote stands "
+                f"above; {GUARD}"
             ) from None
 
     def call(self, timeout: float | None, what: tuple[Callable[..., Any], Any, Any]) -> Any:
