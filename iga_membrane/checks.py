@@ -419,7 +419,7 @@ LONGEST_PATH = 10_000
 
 def path_values(field: str, values: Any) -> tuple[float, ...]:
     """Two or more finite numbers, each different from the one before; a path may turn back."""
-    if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
+    if not listed(values):
         raise refusal(field, values, "a list of two or more numbers is needed", "give them")
     given = list(values)
     if not 2 <= len(given) <= LONGEST_PATH:
