@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .deadline import OutOfTime
-from .errors import GeometryError, OutputError, SceneError, SolveError, StateError
+from .errors import SceneError
 
 Rule = Callable[[str, Any], Any]
 """Field and value to the value, checked."""
@@ -287,56 +286,6 @@ def name_of(given: Any) -> str:
     """``module.function`` or ``module.Class`` of something that a user brought."""
     named = given if hasattr(given, "__qualname__") else type(given)
     return f"{named.__module__}.{named.__qualname__}"
-
-
-def called(call: Any, *given: Any) -> Any:
-    """What a function of the user's returns; an error in it blames it by its name."""
-    try:
-        return call(*given)
-    except SceneError as error:
-        raise SceneError(f"{name_of(call)}({_shown(given)}): {error}") from error
-    except (GeometryError, OutputError, StateError, SolveError, OutOfTime, MemoryError):
-        raise
-    except Exception as error:
-        raise SceneError(
-            f"{name_of(call)}({_shown(given)}): raised {type(error).__name__}: {error}; mend the "
-            "function"
-        ) from error
-
-
-def _shown(given: tuple[Any, ...]) -> str:
-    return ", ".join(map(shown, given))
-
-
-def answer_of(
-    call: Any, found: Any, names: Iterable[str], shape: tuple[int, ...], *, finite: bool = True
-) -> list[Array]:
-    """What a function of the user's returned, or an error that blames it: arrays of one shape.
-
-    Parameters
-    ----------
-    call : the function, for messages.
-    names : of the arrays.
-    finite : whether a number that is not is an error.
-    """
-    told, wanted = name_of(call), list(names)
-    if not isinstance(found, (tuple, list)) or len(found) != len(wanted):
-        raise SceneError(
-            f"{told}: returned {shown(found)}, expected {', '.join(wanted)}: {len(wanted)} arrays "
-            f"of shape {shape}"
-        )
-    arrays = []
-    for name, value in zip(wanted, found, strict=True):
-        one = np.asarray(value)
-        if one.shape != shape or one.dtype.kind not in "fiu":
-            raise SceneError(
-                f"{told}: {name} has shape {one.shape} and dtype {one.dtype}, expected {shape} and "
-                "float64"
-            )
-        if finite and not np.isfinite(one).all():
-            raise SceneError(f"{told}: {name} is not finite; it must be everywhere")
-        arrays.append(one.astype(float, copy=False))
-    return arrays
 
 
 def array(field: str, value: Any, *, shape: tuple[int | None, ...] | None = None) -> Array:

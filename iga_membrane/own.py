@@ -7,7 +7,7 @@ ends, and rejected.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextvars import ContextVar
 from typing import Any
 
@@ -15,7 +15,8 @@ import numpy as np
 
 from .arrays import Array
 from .checks import name_of, shown
-from .errors import SceneError
+from .deadline import OutOfTime
+from .errors import GeometryError, OutputError, SceneError, SolveError, StateError
 
 PACKAGE = __name__.partition(".")[0]
 STEPS = 10.0 ** -np.arange(2.0, 8.0)
@@ -61,6 +62,56 @@ def note_bad(call: Any, answer: str, values: Array, where: Array, place: str) ->
         f"{name_of(call)} returned {answer} = {float(values[first])!r} at {place} {shown(at)}: it "
         "must be finite wherever the membrane may come"
     )
+
+
+def called(call: Any, *given: Any) -> Any:
+    """What a function of the user's returns; an error in it blames it by its name."""
+    try:
+        return call(*given)
+    except SceneError as error:
+        raise SceneError(f"{name_of(call)}({_shown(given)}): {error}") from error
+    except (GeometryError, OutputError, StateError, SolveError, OutOfTime, MemoryError):
+        raise
+    except Exception as error:
+        raise SceneError(
+            f"{name_of(call)}({_shown(given)}): raised {type(error).__name__}: {error}; mend the "
+            "function"
+        ) from error
+
+
+def _shown(given: tuple[Any, ...]) -> str:
+    return ", ".join(map(shown, given))
+
+
+def answer_of(
+    call: Any, found: Any, names: Iterable[str], shape: tuple[int, ...], *, finite: bool = True
+) -> list[Array]:
+    """What a function of the user's returned, or an error that blames it: arrays of one shape.
+
+    Parameters
+    ----------
+    call : the function, for messages.
+    names : of the arrays.
+    finite : whether a number that is not is an error.
+    """
+    told, wanted = name_of(call), list(names)
+    if not isinstance(found, (tuple, list)) or len(found) != len(wanted):
+        raise SceneError(
+            f"{told}: returned {shown(found)}, expected {', '.join(wanted)}: {len(wanted)} arrays "
+            f"of shape {shape}"
+        )
+    arrays = []
+    for name, value in zip(wanted, found, strict=True):
+        one = np.asarray(value)
+        if one.shape != shape or one.dtype.kind not in "fiu":
+            raise SceneError(
+                f"{told}: {name} has shape {one.shape} and dtype {one.dtype}, expected {shape} and "
+                "float64"
+            )
+        if finite and not np.isfinite(one).all():
+            raise SceneError(f"{told}: {name} is not finite; it must be everywhere")
+        arrays.append(one.astype(float, copy=False))
+    return arrays
 
 
 def check_slopes(

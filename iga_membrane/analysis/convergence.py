@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 
 from ..arguments import checked
-from ..checks import anything, called, choice, integer, items, number, record
+from ..checks import anything, choice, integer, items, number, record
 from ..errors import OutputError, SceneError
 from ..fields import FIELDS
 from ..files import write_whole
 from ..optional import optional
+from ..own import called
 from ..scenes.liquid import Discretization, Model, space_name
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions

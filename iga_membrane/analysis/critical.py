@@ -9,8 +9,9 @@ from functools import partial
 from scipy.optimize import brentq
 
 from ..arguments import checked
-from ..checks import called, name_of, number, record
+from ..checks import name_of, number, record
 from ..errors import SceneError
+from ..own import called
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
 from ..solver.solution import Solution

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array, Index
-from ..checks import POSITIVE, answer_of, called, contact_angle, name_of, one_or_more, shown
+from ..checks import POSITIVE, contact_angle, name_of, one_or_more, shown
 from ..errors import SceneError
-from ..own import check_slopes, note_bad
+from ..own import answer_of, called, check_slopes, note_bad
 from .nearest import Nearest, Solid
 
 POINTS = 60

@@ -9,9 +9,9 @@ from typing import Any, Literal
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import called, path_values
+from ..checks import path_values
 from ..errors import SceneError, SolveError, StateError
-from ..own import begin
+from ..own import begin, called
 from ..scenes.scene import Ramp, Scene
 from ..tables import column, dataframe, dataset
 from ..terms import Contact, TrimmedContactLine

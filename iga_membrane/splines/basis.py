@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import POSITIVE, Rule, array, called, either, function, integer, items, refusal, words
+from ..checks import POSITIVE, Rule, array, either, function, integer, items, refusal, words
 from ..errors import SceneError
+from ..own import called
 from .bernstein import bernstein, extraction
 from .knots import DEGREE, ELEMENTS, check_knots, greville, increasing, open_knots
 

@@ -15,8 +15,9 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import answer_of, called, either, function, integer, number, words
+from ..checks import either, function, integer, number, words
 from ..errors import SceneError
+from ..own import answer_of, called
 from ..splines import (
     DEGREE,
     PATCH,

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import answer_of, called
-from ..own import note_bad
+from ..own import answer_of, called, note_bad
 from ..solids import Nearest, Solid
 from ..splines import Table
 from . import variations as vary

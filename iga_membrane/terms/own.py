@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..checks import answer_of, called, name_of, real, shown
+from ..checks import name_of, real, shown
 from ..errors import SceneError
-from ..own import check_slopes, is_own
+from ..own import answer_of, called, check_slopes, is_own
 from ..solids.own import check_solid
 from ..surface.surface import Surface
 from .gap import GapTerm, LocalGap
