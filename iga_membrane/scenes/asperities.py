@@ -126,7 +126,7 @@ def whole_skin(
     narrow = enough and pattern.unresolved(drop.pressure, wide / (fine * elements))
     ring = RING * pattern.spot(drop.pressure) if narrow else None
     stretch = Stretch(fine, reach / fine) if reach < fine or spots else Stretch()
-    space = pillow_space(degree, elements)
+    space = pillow_space(degree, elements, stretch.aspect)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
         points, _ = closed_surface(
@@ -194,13 +194,12 @@ def _finest(
     """
     chosen, fewest = FINE, (np.inf, -1)
     for fine in PARTS_BELOW:
-        slope = reach / fine
-        last = slope + 2.0 * (1.0 - slope) / (1.0 - fine)
-        if last < STEEPEST * slope:
+        stretch = Stretch(float(fine), reach / fine)
+        if stretch.aspect < STEEPEST:
             continue
         needed = [(under / fine, -1)]
-        space = pillow_space(2, SAMPLE)
-        surface = Surface(space, closed_surface(space, meridian, Stretch(fine, slope))[0])
+        space = pillow_space(2, SAMPLE, stretch.aspect)
+        surface = Surface(space, closed_surface(space, meridian, stretch)[0])
         ticks = np.linspace(-1.0, 1.0, 4 * SAMPLE + 2)[1:-1]
         k = surface.at(np.stack(np.meshgrid(ticks, ticks, indexing="ij"), axis=-1), 1)
         for i, spot in enumerate(spots):

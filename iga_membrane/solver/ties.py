@@ -160,8 +160,8 @@ class Ties:
         idle = lonely[self._of_points]
         f, size = self._space.functions, self._space.count
         real = np.ones(f.shape, bool)
-        if self._space.pole is not None:
-            # some functions of the elements there are empty
+        if len(self._space.near):
+            # at poles and folds some functions are empty
             real[self._space.near] = self._space.combine.any(axis=2)
         near = idle[f].any(axis=1)
         f, real = f[near], real[near]

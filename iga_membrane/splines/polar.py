@@ -73,7 +73,10 @@ def net_of(space: Space, points: Array) -> Array:
     """(n1, n2, c) the full control net of control points (count, c)."""
     n1, n2 = space.net_shape
     if space.shared is not None:
-        return points[space.shared].reshape(n1, n2, -1)
+        full = points[space.shared]
+        if space.ruled is not None:
+            full[space.ruled.places] = space.ruled.of(points)
+        return full.reshape(n1, n2, -1)
     if space.pole is None:
         return points.reshape(n1, n2, -1)
     net = np.empty((n1, n2, points.shape[1]))

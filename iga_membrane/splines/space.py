@@ -16,6 +16,7 @@ from ..checks import Rule, choice, integer, ndarray, words
 from ..errors import SceneError
 from .basis import Basis
 from .quadrature import gauss
+from .ruled import Ruled
 from .table import EdgeTable, Table
 
 Rows = dict[tuple[int, int], Array]
@@ -34,7 +35,8 @@ class Space:
     """Functions of two parameters ``(xi1, xi2)``.
 
     The functions of an element are tensor products of the two bases, made rational if there are
-    weights. At a pole (:mod:`.polar`) element ``near[k]`` combines them by ``combine[k]``.
+    weights. At a pole (:mod:`.polar`) or a fold (:mod:`.pillow`) element ``near[k]`` combines them
+    by ``combine[k]``.
 
     Attributes
     ----------
@@ -42,11 +44,12 @@ class Space:
     functions : (elements, local) global number of each local function.
     count : number of functions, that is of control points.
     weights : (n1, n2) NURBS weights > 0, or None for polynomials.
-    near, combine : (k,) elements at a pole and (k, local, local) their functions by tensor
-        products; empty without a pole.
+    near, combine : (k,) elements at a pole or a fold and (k, local, local) their functions by
+        tensor products.
     pole : continuity with which ``xi2 = end`` is closed to a point (0 or 1), or None.
-    shared, leaders : of a pillow (:mod:`.pillow`): (n1 * n2,) the control point of each place of
-        the net, and (count,) the first place of each control point.
+    shared, leaders, ruled : of a pillow (:mod:`.pillow`): (n1 * n2,) the control point of each
+        place of the net, -1 where it follows several, (count,) the first place of each control
+        point, and the places that follow several.
     """
 
     bases: tuple[Basis, Basis]
@@ -58,6 +61,7 @@ class Space:
     pole: int | None = None
     shared: Index | None = field(default=None, repr=False)
     leaders: Index | None = field(default=None, repr=False)
+    ruled: Ruled | None = field(default=None, repr=False)
 
     @property
     def degree(self) -> int:
@@ -231,8 +235,8 @@ class Space:
             return np.arange(len(e1))
         one, two = (basis.kinds for basis in self.bases)
         kinds = one[e1] * (two.max() + 1) + two[e2]
-        pole = np.isin(e1 * self.bases[1].elements + e2, self.near)
-        kinds[pole] = kinds.max(initial=0) + 1 + np.arange(pole.sum())
+        near = np.isin(e1 * self.bases[1].elements + e2, self.near)
+        kinds[near] = kinds.max(initial=0) + 1 + np.arange(near.sum())
         return np.asarray(np.unique(kinds, return_inverse=True)[1])
 
     @cached_property
@@ -242,7 +246,7 @@ class Space:
         return np.stack(grids, axis=-1)
 
     def finished(self, rows: Rows, elements: Index) -> Rows:
-        """Tensor products (e, q, local) made rational, then combined at a pole."""
+        """Tensor products (e, q, local) made rational, then combined at a pole or a fold."""
         if self.weights is not None:
             tensor = _tensor_functions(self.bases)[elements]
             rows = _rational(rows, self.weights.ravel()[tensor][:, None])

@@ -46,11 +46,11 @@ class Meridian:
         log = self.log
         with np.errstate(divide="ignore"):
             at = np.log(size)
-        r = np.interp(at, log, self.r)
-        r = np.where(at < log[0], self.r[0] * np.exp(np.minimum(at - log[0], 0.0)), r)
-        r = np.where(at > log[-1], self.r[-1] * np.exp(np.minimum(log[-1] - at, 0.0)), r)
-        z = np.interp(at, log, self.z)
+        # beyond its ends the meridian goes on, flat, to the axis
+        near = np.exp(np.minimum(np.minimum(at - log[0], log[-1] - at), 0.0))
+        r, z = near * np.interp(at, log, self.r), np.interp(at, log, self.z)
         normal = np.stack([np.interp(at, log, n) for n in self.normal.T], axis=-1)
+        normal[..., 0] *= near
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         return r, z, normal
 
@@ -74,6 +74,16 @@ class Stretch:
 
     fine: float = 0.0
     slope: float = 1.0
+
+    @property
+    def last(self) -> float:
+        """Slope at the ends."""
+        return self.slope + 2.0 * (1.0 - self.slope) / (1.0 - self.fine)
+
+    @property
+    def aspect(self) -> float:
+        """Of the elements in the middle of a side, across it over along it."""
+        return self.last / self.slope
 
     def __call__(self, x: Array) -> Array:
         # the square goes on beyond its sides, point-symmetric about their middles

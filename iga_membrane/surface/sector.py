@@ -135,13 +135,14 @@ def sector_images(space: Space, sector: Sector) -> Index:
     if not ring.periodic and sector.model == "eighth" and ring.elements != other.elements:
         raise SceneError('model = "eighth" needs as many elements in both directions')
     n1, n2 = space.net_shape
-    net: Index = np.arange(n1 * n2) if space.shared is None else space.shared
-    net = net.reshape(n1, n2)
-    owner = np.arange(int(net.max()) + 1)
+    numbers = np.arange(n1 * n2) if space.shared is None else space.shared
+    first = np.arange(n1 * n2) if space.leaders is None else space.leaders
+    owner = np.arange(len(first))
     for fold in list(FOLDS[sector.model]) * sector.copies:
-        image = _image(space, net, fold)
-        least = np.minimum(owner[net], owner[image])
-        np.minimum.at(owner, net.ravel(), least.ravel())
+        image = _image(space, numbers.reshape(n1, n2), fold).ravel()[first]
+        least = np.minimum(owner, owner[image])
+        owner[image] = np.minimum(owner[image], least)
+        owner = np.minimum(owner, least)
     if space.pole is None:
         return owner
     rings = n2 - space.joined_rings

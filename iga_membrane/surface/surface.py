@@ -67,17 +67,19 @@ class Surface:
         """Geometry at any parameters (..., 2), exactly from the spline derivatives."""
         xi = np.asarray(xi, float)
         functions, rows = self.space.at(xi.reshape(-1, 2), orders)
-        local = self.points[functions]
-        shape = xi.shape[:-1]
-        x = {
-            key: np.einsum("ta,tai->ti", row, local).reshape(*shape, 3) for key, row in rows.items()
-        }
+        local, shape = self.points[functions], (*xi.shape[:-1], 3)
+        position = np.einsum("ta,tai->ti", rows.pop((0, 0)), local)
+        # derivatives do not see where a surface is: taken from the point itself they keep their
+        # digits where tangents vanish, at poles and folds
+        local = local - position[:, None]
+        x = {key: np.einsum("ta,tai->ti", row, local).reshape(shape) for key, row in rows.items()}
         second = None
         if orders == 2:
             second = np.stack(
                 [np.stack([x[2, 0], x[1, 1]], -2), np.stack([x[1, 1], x[0, 2]], -2)], -3
             )
-        return Kinematics(x[0, 0], np.stack([x[1, 0], x[0, 1]], axis=-2), second)
+        tangents = np.stack([x[1, 0], x[0, 1]], axis=-2)
+        return Kinematics(position.reshape(shape), tangents, second)
 
     def grid(self, n1: int, n2: int, orders: int = 2) -> Kinematics:
         """Geometry on a regular grid of parameters, arrays (n1, n2, ...)."""

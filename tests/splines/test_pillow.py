@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from iga_membrane.errors import SceneError
 from iga_membrane.splines import net_of, pillow_space, points_of
 
 SPACES = [(degree, elements) for degree in (2, 3, 4) for elements in (3, 6)]
@@ -41,10 +42,46 @@ def test_derivatives_below_the_degree_cross_the_glued_sides(degree, elements, si
             assert jet == pytest.approx((-1) ** (i + j) * there[i, j], abs=1e-10 * size), (i, j)
 
 
+@pytest.mark.parametrize("aspect", [1.0, 3.0])
+@pytest.mark.parametrize(("degree", "elements"), SPACES)
+def test_functions_at_a_fold_have_the_second_derivatives_of_a_plane_in_the_squared_coordinate(
+    degree, elements, aspect
+):
+    space = pillow_space(degree, elements, aspect)
+    values = np.random.default_rng(0).standard_normal(space.count)
+    inside = 1e-7 * np.array([0.6, 0.8])
+    for across in (0, 1):
+        for side in (1.0, -1.0):
+            xi = np.roll([side, 0.0], across) - side * np.roll(inside, across)
+            functions, rows = space.at(xi)
+            first, second, mixed = (
+                float(rows[key][0] @ values[functions[0]]) / elements ** sum(key)
+                for key in ((1, 0), (2 - 2 * across, 2 * across), (1, 1))
+            )
+            other = float(rows[2 * across, 2 - 2 * across][0] @ values[functions[0]])
+            assert abs(first) < 1e-4
+            assert second == pytest.approx(-(aspect**2) * other / elements**2, abs=1e-3)
+            assert abs(mixed) > 1e-3
+
+
+def test_a_folded_patch_of_another_degree_is_refused():
+    for degree in (1, 5):
+        with pytest.raises(SceneError, match="degree 2 to 4"):
+            pillow_space(degree, 6)
+
+
 @pytest.mark.parametrize(("degree", "elements"), SPACES)
 def test_a_net_has_one_value_at_glued_places(degree, elements):
     space = pillow_space(degree, elements)
     points = np.random.default_rng(1).standard_normal((space.count, 3))
-    assert np.array_equal(points_of(space, net_of(space, points)), points)
-    # the flat square has more: the folds give up the functions beyond the sides
-    assert (2 * elements) ** 2 <= space.count < (2 * elements + degree) ** 2
+    net = net_of(space, points)
+    assert np.array_equal(points_of(space, net), points)
+    # it is the net of the same surface
+    one, two = space.bases
+    xi = np.random.default_rng(2).uniform(-1.0, 1.0, (50, 2))
+    found = np.einsum("ti,tj,ijc->tc", one.matrix(xi[:, 0]), two.matrix(xi[:, 1]), net)
+    functions, rows = space.at(xi, 0)
+    assert found == pytest.approx(np.einsum("ta,tac->tc", rows[0, 0], points[functions]))
+    # the folds give up the functions beyond the sides, and one or two each that follow others
+    ruled = 4 if degree % 2 else 8
+    assert (2 * elements) ** 2 <= space.count + ruled < (2 * elements + degree) ** 2

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from iga_membrane.scenes.asperities import whole_skin
 from iga_membrane.scenes.pattern import Pattern
-from iga_membrane.splines import pillow_space
+from iga_membrane.splines import net_of, pillow_space
 from iga_membrane.surface.closed import (
     QUARTER,
     Meridian,
@@ -75,10 +75,21 @@ def test_sectors_integrate_the_whole(degree, elements):
 def test_control_points_and_directions_have_the_mirror_planes():
     skin = whole_skin(1.0, 4 * np.pi / 3, Pattern(0.2), 2, 12)
     for field in (skin.points, skin.directions):
-        net = field[skin.space.shared].reshape(*skin.space.net_shape, 3)
+        net = net_of(skin.space, field)
         assert net[::-1] == pytest.approx(net * [1, -1, 1], abs=1e-12)
         assert net[:, ::-1] == pytest.approx(net * [-1, 1, 1], abs=1e-12)
         assert net.swapaxes(0, 1) == pytest.approx(net[..., [1, 0, 2]], abs=1e-12)
+
+
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_directions_at_the_top_and_in_the_middle_of_the_foot_are_vertical(degree):
+    _, points, directions = ball(degree, 8)
+    on_axis = np.hypot(points[:, 0], points[:, 1]) < 1e-9
+    assert on_axis.sum() == (2 if degree % 2 else 0)
+    assert np.abs(directions[on_axis, :2]).max(initial=0.0) < 1e-9
+    # next to them they lean away from the axis like the control points
+    near = np.argsort(np.hypot(points[:, 0], points[:, 1]))[:10]
+    assert directions[near] == pytest.approx(points[near], abs=0.02)
 
 
 def test_the_droplet_starts_with_its_volume_and_an_even_foot():

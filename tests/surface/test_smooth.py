@@ -1,0 +1,83 @@
+"""Every surface that the unknowns can reach is C1: round each point of the membrane its normals, at
+parameter distances down to 1e-7, have one limit."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from helpers import UNIT_VOLUME
+
+import iga_membrane as iga
+from iga_membrane.solver.assembly import Assembly
+
+DISTANCES = (1e-3, 1e-5, 1e-7)
+MODELS = ("full", "half", "quarter", "eighth")
+
+
+def mesh(degree, elements, model=None, space="bspline"):
+    return iga.Discretization(space=space, degree=degree, elements=elements, model=model)
+
+
+def on_asperities(angle, degree, model, elements=20):
+    solid = iga.SphereLattice(angle, 0.2, 0.5, "square", (0.0, 0.0))
+    return iga.sessile_droplet(
+        solid, volume=UNIT_VOLUME, gravity=0.3, discretization=mesh(degree, elements, model)
+    )
+
+
+@cache
+def perturbed(kind, *arguments, amount=0.02):
+    """The start of a scene, moved by a random step of its unknowns."""
+    scene = kind(*arguments)
+    assembly, surface = Assembly(scene), scene.local_surface()
+    step = np.random.default_rng(1).uniform(-amount, amount, assembly.size)
+    moved = assembly.motion(surface).displacement(step)
+    assert np.abs(moved).max() > 0.5 * amount
+    return surface.moved(surface.points + moved)
+
+
+def spread(surface, copies, distance):
+    """Angle in degrees within which the normals lie that are a distance in parameters away from a
+    point, which a closed patch may have at several places ``copies``."""
+    turn = 0.1 + 2.0 * np.pi * np.arange(16) / 16.0
+    circle = distance * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    xi = (np.array(copies)[:, None] + circle).reshape(-1, 2)
+    for along, basis in enumerate(surface.space.bases):
+        if not basis.periodic:
+            first, last = basis.breaks[[0, -1]]
+            xi = xi[(first <= xi[:, along]) & (xi[:, along] <= last)]
+    normals = surface.at(xi, 1).normal
+    chords = np.linalg.norm(normals[:, None] - normals, axis=-1)
+    return float(np.degrees(2.0 * np.arcsin(0.5 * chords.max())))
+
+
+def check_smooth(surface, points):
+    """Normals close in on one with the distance, for lists of the places of a point; curvature
+    lets the rate change a little."""
+    found = np.array([[spread(surface, copies, d) for d in DISTANCES] for copies in points])
+    rate = found[:, 0].max() / DISTANCES[0]
+    assert 0.0 < rate < 1e6
+    for distance, angles in zip(DISTANCES, found.T, strict=True):
+        assert angles.max() <= 1.5 * rate * distance + 1e-6, distance
+
+
+FOLDS = [[(1.0, 0.0)], [(-1.0, 0.0)], [(0.0, 1.0)], [(0.0, -1.0)]]
+CORNERS = [[(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]]
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("degree", [2, 3, 4])
+@pytest.mark.parametrize("angle", [180.0, 150.0])
+def test_the_folded_patch_has_no_cone_at_its_folds(angle, degree, model):
+    surface = perturbed(on_asperities, angle, degree, model)
+    for fold in FOLDS:
+        check_smooth(surface, [fold])
+
+
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_the_folded_patch_is_smooth_on_its_seams_and_where_its_corners_meet(degree):
+    surface = perturbed(on_asperities, 180.0, degree, "full")
+    along = np.random.default_rng(2).uniform(0.05, 0.95, 10)
+    check_smooth(surface, CORNERS)
+    check_smooth(surface, [[(1.0, t), (1.0, -t)] for t in along])
+    check_smooth(surface, [[(t, -1.0), (-t, -1.0)] for t in along])
