@@ -77,7 +77,7 @@ class Basis:
 
     @property
     def smooth(self) -> bool:
-        """Whether derivatives are continuous everywhere."""
+        """Whether derivatives below the degree are continuous everywhere."""
         return self.continuity >= 1 and not self.joints
 
     @property
@@ -213,7 +213,7 @@ def periodic_basis(
     elements : more than the degree.
     degree : 2 or more.
     length : of the ring.
-    joints : elements at whose start patches meet with continuity 0.
+    joints : elements at whose start patches meet with continuity 1.
 
     Raises
     ------
@@ -227,7 +227,7 @@ def periodic_basis(
     _joints(joints, 0, elements)
     size = length / elements
     multiplicity = np.ones(elements, int)
-    multiplicity[list(joints)] = degree
+    multiplicity[list(joints)] = degree - 1
     knots = np.repeat(np.arange(elements), multiplicity)
     count = len(knots)
     last = np.cumsum(multiplicity) - 1  # the knot at which each element starts

@@ -24,6 +24,9 @@ from .sector import check_symmetric, sector_images
 from .supports import Fixed, Joint, Sector, Shift, Sliding, Support, Symmetry
 from .surface import Surface
 
+CORNER = 0.2
+"""Reach of a rim's corner over the rim's side; 0.15 to 0.45 take the same Newton iterations."""
+
 
 @dataclass(frozen=True, eq=False)
 @checked(
@@ -146,6 +149,10 @@ class Spines:
     def on(self, surface: Surface) -> Motion:
         """Directions re-based on a surface: its normals, blended into a sliding edge's plane.
 
+        Towards the corners of a rim with joints they turn to the normal of its plane, in which the
+        membrane lies there: normals turn by a right angle between control points that crowd in a
+        corner, and a step along them would fold the mesh.
+
         The blend ``d = (1 - w) m + w n``, with ``1 - w`` the parametric distance from the other
         end, is one smooth field over the patch; a jump in it would cost orders of magnitude.
         """
@@ -154,6 +161,11 @@ class Spines:
             return self._motion(rows)
         space = surface.space
         normals = self._normals(surface)
+        if space.bases[0].joints:
+            near, up = self._corners
+            plane = up * np.sign(normals @ up)[..., None]
+            normals = (1.0 - near) * normals + near * plane
+            normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
         for support in self._sliding:
             along, end = EDGES[support.edge]
             basis = space.bases[1 - along]
@@ -217,6 +229,18 @@ class Spines:
             along = self.share[:, None] * (self._given @ self.shifts.T)
             np.add.at(columns, self.unknowns[: self.space.count], along)
         return columns[:-1]
+
+    @cached_property
+    def _corners(self) -> tuple[Array, Array]:
+        """How near (n1, n2, 1) control points start to the corners of a rim ``xi2 = 1``, and the
+        unit normal (3,) of its plane."""
+        ring, net = self.space.bases[0], net_of(self.space, self._start)
+        corners = np.tensordot(ring.matrix(ring.joints), net[:, -1], axes=1)
+        up = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
+        away = np.linalg.norm(net[:, :, None] - corners, axis=-1)
+        reach = CORNER * np.linalg.norm(corners[1] - corners[0])
+        near = np.exp(-((away / reach) ** 2)).sum(axis=-1, keepdims=True)
+        return np.minimum(near, 1.0), up / np.linalg.norm(up)
 
     @cached_property
     def _derivative_matrices(self) -> tuple[Array, Array, Array, Array]:

@@ -147,31 +147,43 @@ def each_arc_length(surface: Surface, grading: Grading) -> Surface:
 
 
 def straightened(surface: Surface) -> Surface:
-    """The same shape, control points of a ring spread so that ``xi1`` is the azimuth.
+    """The same shape, control points of a ring spread so that lines of constant ``xi1`` are
+    straight in plan: from the inner edge, where ``xi1`` is the azimuth about its middle, to the
+    point of the rim that has it already.
 
-    The azimuth is taken about a point that moves with ``xi2`` from the middle of the inner edge to
-    that of the outer one. Where patches meet on a ring, steps along the spines leave bumps of the
-    parametrization beside the joints; without them the space has its full order.
+    Where patches meet on a ring, steps along the spines leave bumps of the parametrization beside
+    the joints; without them the space has its full order.
     """
     space = surface.space
-    ring, meridian = space.bases
+    ring = space.bases[0]
     points, matrix = meridian_interpolation(space)
-    xi = np.stack(np.meshgrid(ring.abscissae, points, indexing="ij"), axis=-1)
-    ends = np.array([surface.net[:, k, :2].mean(axis=0) for k in (0, -1)])
-    part = (points - meridian.breaks[0]) / (meridian.breaks[-1] - meridian.breaks[0])
-    middle = (1.0 - part)[:, None] * ends[0] + part[:, None] * ends[1]
     turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
+    azimuth = turn * ring.abscissae
+    middle = surface.net[:, 0, :2].mean(axis=0)
+    ray = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
+    inner = _crossed(surface, points[:1], np.broadcast_to(middle, ray.shape), ray)[:, 0]
+    rim = surface.at(np.stack([ring.abscissae, np.full(ring.count, points[-1])], axis=1), 1)
+    start = inner[:, :2]
+    between = _crossed(surface, points[1:-1], start, rim.position[:, :2] - start)
+    values = np.concatenate([inner[:, None], between, rim.position[:, None]], axis=1)
+    return interpolated(space, values, matrix)
+
+
+def _crossed(surface: Surface, points: Array, start: Array, along: Array) -> Array:
+    """(n1, k, 3) where lines of constant ``xi2 = points`` cross lines in plan, one for each
+    abscissa of the ring and near it, that start (n1, 2) somewhere and run along (n1, 2)."""
+    ring = surface.space.bases[0]
+    xi = np.stack(np.meshgrid(ring.abscissae, points, indexing="ij"), axis=-1)
     for _ in range(20):
         k = surface.at(xi, 1)
-        x, y = np.moveaxis(k.position[..., :2] - middle, -1, 0)
+        x, y = np.moveaxis(k.position[..., :2] - start[:, None], -1, 0)
         dx, dy = np.moveaxis(k.tangents[..., 0, :2], -1, 0)
-        off = np.arctan2(y, x) - turn * ring.abscissae[:, None]
-        off = (off + np.pi) % (2.0 * np.pi) - np.pi
-        step = off * (x * x + y * y) / (x * dy - y * dx)
+        u, v = along[:, :1], along[:, 1:]
+        step = (u * y - v * x) / (u * dy - v * dx)
         xi[..., 0] -= step
-        if np.abs(step).max() <= 1e-14 * (ring.breaks[-1] - ring.breaks[0]):
+        if np.abs(step).max(initial=0.0) <= 1e-14 * (ring.breaks[-1] - ring.breaks[0]):
             break
-    return interpolated(space, surface.at(xi, 1).position, matrix)
+    return surface.at(xi, 1).position
 
 
 def interpolated(space: Space, values: Array, matrix: Array) -> Surface:

@@ -25,8 +25,11 @@ from ..splines import (
     Basis,
     BasisOf,
     Space,
+    bspline_basis,
     close_pole,
+    lagrange_basis,
     line_basis,
+    open_knots,
     points_of,
     ring_basis,
     tensor_space,
@@ -67,7 +70,7 @@ def ring_space(
     elements : along the meridian; the ring has twice as many, rounded up to whole sectors.
     sectors : the ring's elements are a multiple of it.
     angle : "nurbs": opening (radians) of the arc that the weights make exact along the meridian.
-    corners : four patches that meet on the diagonals with continuity 0, for a square rim; each
+    corners : four patches that meet on the diagonals with continuity 1, for a square rim; each
         eighth of the ring then has ``elements`` elements.
     around : elements round the ring, instead.
     kink : element along the meridian at whose start splines have continuity 0: a contact line
@@ -195,8 +198,29 @@ def circle(ring: Basis) -> Array:
 
 def square(ring: Basis) -> Array:
     """(n1, 3) control points of the square with corners (+-1, +-1), for a ring with joints on the
-    diagonals; ``xi1`` is the azimuth at the abscissae."""
-    angles = 2.0 * np.pi * ring.abscissae / (ring.breaks[-1] - ring.breaks[0])
-    ray = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
-    values = ray / np.abs(ray).max(axis=1, keepdims=True)
-    return np.linalg.solve(ring.matrix(ring.abscissae), values)
+    diagonals; ``xi1`` is the azimuth of the sides' middles.
+
+    Two control points meet in each corner: the curve is C1 by its parameter and comes to rest
+    there, so that surfaces which end on it are C1 inside.
+    """
+    side = _side(ring)
+    turns = 4.0 * ring.abscissae / (ring.breaks[-1] - ring.breaks[0])
+    which = np.floor(turns + 0.5)
+    k = np.abs(side.abscissae[:, None] - 2.0 * (turns - which)).argmin(axis=0)
+    t = side.abscissae
+    # at rest in the corners, as even as a fifth power allows
+    matrix, values = side.matrix(t), 0.25 * (5.0 * t - t**5)
+    if side.continuity:
+        matrix[[1, -2]], values[[1, -2]] = side.matrix([-1.0, 1.0], 1), 0.0
+    along = np.linalg.solve(matrix, values)[k]
+    cosine, sine = np.round([np.cos(0.5 * np.pi * which), np.sin(0.5 * np.pi * which)])
+    x, y = cosine - along * sine, sine + along * cosine
+    return np.stack([x, y, np.zeros_like(x)], axis=1)
+
+
+def _side(ring: Basis) -> Basis:
+    """The basis on one side of a square, from -1 to 1, clamped at the corners."""
+    breaks = np.linspace(-1.0, 1.0, ring.elements // 4 + 1)
+    if ring.continuity == 0:
+        return lagrange_basis(breaks, ring.degree)
+    return bspline_basis(open_knots(breaks, ring.degree), ring.degree)

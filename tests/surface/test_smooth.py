@@ -26,7 +26,7 @@ def on_asperities(angle, degree, model, elements=20):
 
 
 @cache
-def perturbed(kind, *arguments, amount=0.02):
+def perturbed(kind, *arguments, amount=2e-3):
     """The start of a scene, moved by a random step of its unknowns."""
     scene = kind(*arguments)
     assembly, surface = Assembly(scene), scene.local_surface()
@@ -51,13 +51,13 @@ def spread(surface, copies, distance):
     return float(np.degrees(2.0 * np.arcsin(0.5 * chords.max())))
 
 
-def check_smooth(surface, points):
+def check_smooth(surface, points, distances=DISTANCES):
     """Normals close in on one with the distance, for lists of the places of a point; curvature
     lets the rate change a little."""
-    found = np.array([[spread(surface, copies, d) for d in DISTANCES] for copies in points])
-    rate = found[:, 0].max() / DISTANCES[0]
+    found = np.array([[spread(surface, copies, d) for d in distances] for copies in points])
+    rate = found[:, 0].max() / distances[0]
     assert 0.0 < rate < 1e6
-    for distance, angles in zip(DISTANCES, found.T, strict=True):
+    for distance, angles in zip(distances, found.T, strict=True):
         assert angles.max() <= 1.5 * rate * distance + 1e-6, distance
 
 
@@ -81,3 +81,59 @@ def test_the_folded_patch_is_smooth_on_its_seams_and_where_its_corners_meet(degr
     check_smooth(surface, CORNERS)
     check_smooth(surface, [[(1.0, t), (1.0, -t)] for t in along])
     check_smooth(surface, [[(t, -1.0), (-t, -1.0)] for t in along])
+
+
+def on_a_square_rim(degree, model, load="", place=(0.0, 0.0, -1.0)):
+    loads = {"pressed": {"pressure": 0.3}, "held": {"membrane": iga.WholeMembrane()}}
+    return iga.liquid_sheet(
+        iga.Sphere(140.0, 1.0, place),
+        size=5.0,
+        boundary="square",
+        discretization=mesh(degree, 6, model),
+        **loads.get(load, {}),
+    )
+
+
+def check_diagonals(surface):
+    """No kink where a ring's patches meet. Near the rim's corner, which is one, normals turn within
+    a distance that shrinks with that to the corner."""
+    ring, meridian = surface.space.bases
+    assert len(ring.joints) == 4
+    middle, end = np.linspace(meridian.breaks[0] + 0.01, 0.9, 12), np.linspace(0.9, 0.999, 5)
+    check_smooth(surface, [[(joint, t)] for joint in ring.joints for t in middle])
+    check_smooth(surface, [[(joint, t)] for joint in ring.joints for t in end], (1e-6, 1e-7))
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("degree", [2, 3, 4])
+@pytest.mark.parametrize("load", ["", "pressed"])
+def test_a_sheet_on_a_particle_has_no_kink_on_its_diagonals(degree, model, load):
+    surface = perturbed(on_a_square_rim, degree, model, load)
+    check_diagonals(surface)
+
+
+def test_nor_has_one_beside_the_middle_or_the_papers_one_with_its_wetted_part():
+    for scene in ((3, "full", "", (0.8, 0.3, -1.0)), (3, "quarter", "held"), (2, "eighth", "held")):
+        check_diagonals(perturbed(on_a_square_rim, *scene))
+
+
+@pytest.mark.parametrize("space", ["bspline", "nurbs", "lagrange"])
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_the_rim_is_a_square_with_corners(degree, space):
+    scene = iga.liquid_sheet(
+        iga.Sphere(90.0, 1.0, (0.0, 0.0, -1.0)),
+        size=5.0,
+        boundary="square",
+        discretization=mesh(degree, 4, None, space),
+    )
+    surface = scene.surface
+    ring = surface.space.bases[0]
+    t = np.linspace(*ring.breaks[[0, -1]], 801)
+    k = surface.at(np.stack([t, np.ones_like(t)], axis=1), 1)
+    assert np.abs(k.position[:, :2]).max(axis=1) == pytest.approx(2.5, rel=1e-12)
+    assert np.abs(k.position[:, 2]).max() < 1e-12
+    corner = np.abs(np.abs(k.position[:, :2]).min(axis=1) - 2.5) < 1e-9
+    assert corner.sum() == 4
+    # forwards along the sides
+    x, y = k.position[:, 0], k.position[:, 1]
+    assert (x[:-1] * y[1:] - y[:-1] * x[1:] > 0.0).all()
