@@ -22,7 +22,7 @@ _HOME = {
     "surface.ring": ("axisymmetric", "drop_space", "ring_space"),
     "surface.refine": ("elevated", "refined"),
     "surface.exchange": ("from_geomdl", "to_geomdl"),
-    "surface.supports": ("Fixed", "Joint", "Sector", "Sliding", "Symmetry"),
+    "surface.supports": ("Fixed", "Joint", "Mirror", "Sector", "Sliding", "Symmetry"),
     "surface.motion": ("Motion", "Spines"),
     "solids": ("Nearest", "Plane", "Solid", "Sphere", "SphereLattice", "Spheres"),
     "terms": ("Centroid", "GapTerm", "Gravity", "PlaneContactLine", "Pressure", "Scale",

@@ -16,10 +16,11 @@ from ..arrays import Array
 from ..checks import words
 from ..errors import SceneError
 from ..solids import Sphere
+from ..splines.space import EDGES
 from ..surface.closed import Stretch
 from ..surface.ring import axisymmetric, drop_space
 from ..surface.shapes import sheet
-from ..surface.supports import Sector
+from ..surface.supports import Mirror, Sector
 from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .asperities import smallest_model
@@ -141,7 +142,7 @@ def asperity_cell(
             if lying
             else TrimmedContactLine(liquid.surface_tension, sphere),
         ],
-        [Sector(model)],
+        [Sector(model), *(Mirror(edge) for edge in (EDGES if shape == "square" else ()))],
         scale=Scale(r, liquid.surface_tension),
         directions=directions,
         ramp=Ramp(
@@ -236,8 +237,21 @@ def _start(
         x, y = x * (1.0 + moved * wall_x), y * (1.0 + moved * wall_y)
         z = np.interp(np.hypot(x, y), drape.r, drape.z)
         surface = flat.moved(np.stack([x + center[0], y + center[1], z], axis=1))
+        surface = _upright(surface)
     up = np.tile([0.0, 0.0, 1.0], (surface.space.count, 1))
     return surface, up
+
+
+def _upright(surface: Surface) -> Surface:
+    """The same start on a square, meeting its walls at right angles: control points next to a wall
+    lie straight before those in it."""
+    net = surface.net
+    for along, end in EDGES.values():
+        rows = np.moveaxis(net, 1 - along, 0)
+        wall, near = (-1, -2) if end else (0, 1)
+        for axis in (1 - along, 2):
+            rows[near, :, axis] = rows[wall, :, axis]
+    return surface.moved(net.reshape(-1, 3))
 
 
 def _describe(

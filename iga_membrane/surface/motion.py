@@ -21,7 +21,7 @@ from ..errors import GeometryError
 from ..splines import Space, net_of
 from ..splines.space import EDGES
 from .sector import check_symmetric, sector_images
-from .supports import Fixed, Joint, Sector, Shift, Sliding, Support, Symmetry
+from .supports import Fixed, Joint, Mirror, Sector, Shift, Sliding, Support, Symmetry
 from .surface import Surface
 
 CORNER = 0.2
@@ -101,6 +101,7 @@ class Spines:
         self.space = space
         self._sliding = [s for s in supports if isinstance(s, Sliding)]
         self._mirrors: list[tuple[Index, int]] = []
+        self._upright: list[tuple[Index, Index]] = []
         owner: Index = np.arange(space.count)
         fixed = np.zeros(space.count, bool)
         for support in supports:
@@ -114,8 +115,14 @@ class Spines:
                 axis = "xyz".index(support.axis)
                 on_plane = np.abs(surface.points[:, axis]) <= 1e-12 * surface.size
                 self._mirrors.append((np.flatnonzero(on_plane), axis))
+                rows = [_next_to(space, edge) for edge in space.open_edges]
+                self._upright += [(edge, near) for edge, near in rows if on_plane[edge].all()]
+            elif isinstance(support, Mirror):
+                self._upright.append(_next_to(space, support.edge))
             elif isinstance(support, Fixed):
                 fixed[space.edge_functions(support.edge)] = True
+        for edge, near in 2 * self._upright:  # twice, for corners
+            owner[near] = owner[edge]
         self._curved = [
             (s, space.edge_functions(s.edge)) for s in self._sliding if s.solid is not None
         ]
@@ -183,6 +190,8 @@ class Spines:
             directions[points, axis] = 0.0
             length = np.linalg.norm(directions[points], axis=1, keepdims=True)
             directions[points] /= np.where(length > 0, length, 1.0)
+        for edge, near in 2 * self._upright:
+            directions[near] = directions[edge]
         normals_of_solids = [
             support.solid.normal(surface.points[points])
             for support, points in self._curved
@@ -274,6 +283,15 @@ class Spines:
                 "parallel or zero; start from a regular parametrization"
             )
         return np.asarray(c / length)
+
+
+def _next_to(space: Space, edge: str) -> tuple[Index, Index]:
+    """Control points of an edge, and those of the row next to it."""
+    along, end = EDGES[edge]
+    net = net_of(space, np.arange(float(space.count))[:, None])[..., 0]
+    rows = np.moveaxis(net, 1 - along, 0)
+    first, second = rows[[-1, -2]] if end else rows[[0, 1]]
+    return np.rint(first).astype(int), np.rint(second).astype(int)
 
 
 def _near(surface: Surface, support: Sliding) -> Array:

@@ -52,7 +52,8 @@ class Sliding:
 @dataclass(frozen=True)
 @checked()
 class Symmetry:
-    """A mirror plane through the origin, normal to an axis; edges that lie in it stay in it.
+    """A mirror plane through the origin, normal to an axis; edges that lie in it stay in it, and the
+    surface meets it at the angle at which it starts.
 
     Attributes
     ----------
@@ -60,6 +61,19 @@ class Symmetry:
     """
 
     axis: Literal["x", "y", "z"]
+
+
+@dataclass(frozen=True)
+@checked(edge=EDGE)
+class Mirror:
+    """An edge in a vertical mirror plane, which the surface meets at a right angle: a cell's wall.
+
+    Attributes
+    ----------
+    edge : of the surface; its control points and those next to it move together.
+    """
+
+    edge: str
 
 
 @dataclass(frozen=True)
@@ -120,4 +134,4 @@ class Shift:
     above: float = 0.0
 
 
-Support = Fixed | Sliding | Symmetry | Joint | Sector | Shift
+Support = Fixed | Sliding | Symmetry | Mirror | Joint | Sector | Shift

@@ -137,3 +137,57 @@ def test_the_rim_is_a_square_with_corners(degree, space):
     # forwards along the sides
     x, y = k.position[:, 0], k.position[:, 1]
     assert (x[:-1] * y[1:] - y[:-1] * x[1:] > 0.0).all()
+
+
+def square_cell(angle, degree, model, place):
+    return iga.asperity_cell(
+        iga.Sphere(angle, 0.05, (*place, -0.05)),
+        size=0.2,
+        pressure=2.0,
+        discretization=mesh(degree, 12, model),
+    )
+
+
+def quarter(degree):
+    """A quarter of a bulged sheet between two mirror planes and two fixed edges."""
+    space = iga.tensor_space(*2 * [iga.line_basis("bspline", 6, degree)])
+    y, x = np.moveaxis(space.abscissae, -1, 0)
+    y, x = (np.where(t == np.unique(t)[1], 0.4 * t, t) for t in (y, x))
+    first = np.where(x == np.unique(x)[1], 0.0, x), np.where(y == np.unique(y)[1], 0.0, y)
+    z = 0.3 * (1.0 - first[0] ** 2) * (1.0 - first[1] ** 2)
+    net = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    mirrors = [iga.Symmetry("x"), iga.Symmetry("y")]
+    fixed = [iga.Fixed("xi1=1"), iga.Fixed("xi2=1")]
+    terms = [iga.SurfaceTension(1.0), iga.Pressure(0.5)]
+    return iga.Scene(iga.Surface(space, net), terms, [*mirrors, *fixed])
+
+
+def check_upright(surface, edges):
+    """Tangent planes contain the normal of the mirror plane in which an edge lies."""
+    t = np.random.default_rng(3).uniform(0.0, 1.0, 50)
+    for along, end in edges:
+        xi = np.empty((50, 2))
+        xi[:, along], xi[:, 1 - along] = t, end
+        normal = surface.at(xi, 1).normal
+        assert np.abs(normal[:, along]).max() < 1e-10
+        assert np.abs(normal[:, 1 - along]).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("model", "place"),
+    [("eighth", (0.0, 0.0)), ("quarter", (0.0, 0.0)), ("half", (0.02, 0.0)), ("full", (0.02, 0.01))],
+)
+@pytest.mark.parametrize("degree", [2, 3, 4])
+@pytest.mark.parametrize("angle", [180.0, 150.0])
+def test_a_cell_and_its_mirror_images_are_one_smooth_surface(angle, degree, model, place):
+    surface = perturbed(square_cell, angle, degree, model, place)
+    # xi1 runs along y: an edge along it lies in a wall x = const
+    check_upright(surface, [(0, 0.0), (0, 1.0), (1, 0.0), (1, 1.0)])
+
+
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_an_open_patch_and_its_mirror_images_are_one_smooth_surface(degree):
+    check_upright(perturbed(quarter, degree), [(0, 0.0), (1, 0.0)])
+    solution = iga.solve(quarter(degree))
+    assert solution.success
+    check_upright(solution.surface, [(0, 0.0), (1, 0.0)])
