@@ -44,7 +44,8 @@ class Basis:
     abscissae : (n,) the point of each function: Greville point or node.
     continuity : continuous derivatives at element boundaries.
     periodic : whether the ends of the domain are joined.
-    joints : parameters inside the domain where patches meet, with continuity 0.
+    joints : parameters inside the domain where patches meet, with continuity 1 on a ring and 0 on
+        a line.
     knots : (n + p + 1,) the clamped knot vector of a B-spline basis on a line, else None.
     """
 

@@ -116,13 +116,13 @@ class Spines:
                 on_plane = np.abs(surface.points[:, axis]) <= 1e-12 * surface.size
                 self._mirrors.append((np.flatnonzero(on_plane), axis))
                 rows = [_next_to(space, edge) for edge in space.open_edges]
-                self._upright += [(edge, near) for edge, near in rows if on_plane[edge].all()]
+                self._upright += [row for row in rows if on_plane[row[0]].all()]
             elif isinstance(support, Mirror):
                 self._upright.append(_next_to(space, support.edge))
             elif isinstance(support, Fixed):
                 fixed[space.edge_functions(support.edge)] = True
-        for edge, near in 2 * self._upright:  # twice, for corners
-            owner[near] = owner[edge]
+        for wall, near in 2 * self._upright:  # twice, for corners
+            owner[near] = owner[wall]
         self._curved = [
             (s, space.edge_functions(s.edge)) for s in self._sliding if s.solid is not None
         ]
@@ -169,9 +169,9 @@ class Spines:
         space = surface.space
         normals = self._normals(surface)
         if space.bases[0].joints:
-            near, up = self._corners
-            plane = up * np.sign(normals @ up)[..., None]
-            normals = (1.0 - near) * normals + near * plane
+            part, up = self._corners
+            level = up * np.sign(normals @ up)[..., None]
+            normals = (1.0 - part) * normals + part * level
             normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
         for support in self._sliding:
             along, end = EDGES[support.edge]
@@ -190,8 +190,8 @@ class Spines:
             directions[points, axis] = 0.0
             length = np.linalg.norm(directions[points], axis=1, keepdims=True)
             directions[points] /= np.where(length > 0, length, 1.0)
-        for edge, near in 2 * self._upright:
-            directions[near] = directions[edge]
+        for wall, near in 2 * self._upright:
+            directions[near] = directions[wall]
         normals_of_solids = [
             support.solid.normal(surface.points[points])
             for support, points in self._curved
@@ -291,7 +291,7 @@ def _next_to(space: Space, edge: str) -> tuple[Index, Index]:
     net = net_of(space, np.arange(float(space.count))[:, None])[..., 0]
     rows = np.moveaxis(net, 1 - along, 0)
     first, second = rows[[-1, -2]] if end else rows[[0, 1]]
-    return np.rint(first).astype(int), np.rint(second).astype(int)
+    return np.asarray(first, int), np.asarray(second, int)
 
 
 def _near(surface: Surface, support: Sliding) -> Array:

@@ -52,8 +52,9 @@ class Sliding:
 @dataclass(frozen=True)
 @checked()
 class Symmetry:
-    """A mirror plane through the origin, normal to an axis; edges that lie in it stay in it, and the
-    surface meets it at the angle at which it starts.
+    """A mirror plane through the origin, normal to an axis; edges that lie in it stay in it.
+
+    The surface meets it at the angle at which it starts, a right one in a smooth whole.
 
     Attributes
     ----------

@@ -175,7 +175,7 @@ def check_upright(surface, edges):
 
 @pytest.mark.parametrize(
     ("model", "place"),
-    [("eighth", (0.0, 0.0)), ("quarter", (0.0, 0.0)), ("half", (0.02, 0.0)), ("full", (0.02, 0.01))],
+    [("eighth", (0, 0)), ("quarter", (0, 0)), ("half", (0.02, 0)), ("full", (0.02, 0.01))],
 )
 @pytest.mark.parametrize("degree", [2, 3, 4])
 @pytest.mark.parametrize("angle", [180.0, 150.0])
