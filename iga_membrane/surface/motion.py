@@ -170,8 +170,7 @@ class Spines:
         normals = self._normals(surface)
         if space.bases[0].joints:
             part, up = self._corners
-            level = up * np.sign(normals @ up)[..., None]
-            normals = (1.0 - part) * normals + part * level
+            normals = normals - part * (normals - (normals @ up)[..., None] * up)
             normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
         for support in self._sliding:
             along, end = EDGES[support.edge]

@@ -105,7 +105,7 @@ def regridded(surface: Surface, grading: Grading) -> Surface:
     azimuth round it."""
     if not surface.space.bases[0].joints:
         return arc_length(surface, grading)
-    return each_arc_length(straightened(surface), grading)
+    return each_arc_length(straightened(surface, grading), grading)
 
 
 def each_arc_length(surface: Surface, grading: Grading) -> Surface:
@@ -146,44 +146,39 @@ def each_arc_length(surface: Surface, grading: Grading) -> Surface:
     return interpolated(space, values, matrix)
 
 
-def straightened(surface: Surface) -> Surface:
-    """The same shape, control points of a ring spread so that lines of constant ``xi1`` are
-    straight in plan: from the inner edge, where ``xi1`` is the azimuth about its middle, to the
-    point of the rim that has it already.
+def straightened(surface: Surface, grading: Grading) -> Surface:
+    """The same shape, lines of constant ``xi1`` as straight in plan as may be: from the inner edge,
+    where ``xi1`` is the azimuth, to the point of the rim that has it already.
 
-    Where patches meet on a ring, steps along the spines leave bumps of the parametrization beside
-    the joints; without them the space has its full order.
+    The azimuth is taken about a point that moves with ``xi2`` from the middle of the inner edge to
+    that of the outer one; it is that of the straight line between two such edges in one plane, also
+    where the membrane is steep or overhangs. Where patches meet on a ring, steps along the spines leave bumps of the
+    parametrization beside the joints; without them the space has its full order.
     """
     space = surface.space
-    ring = space.bases[0]
+    ring, meridian = space.bases
     points, matrix = meridian_interpolation(space)
-    turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
-    azimuth = turn * ring.abscissae
-    middle = surface.net[:, 0, :2].mean(axis=0)
-    ray = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1)
-    inner = _crossed(surface, points[:1], np.broadcast_to(middle, ray.shape), ray)[:, 0]
-    rim = surface.at(np.stack([ring.abscissae, np.full(ring.count, points[-1])], axis=1), 1)
-    start = inner[:, :2]
-    between = _crossed(surface, points[1:-1], start, rim.position[:, :2] - start)
-    values = np.concatenate([inner[:, None], between, rim.position[:, None]], axis=1)
-    return interpolated(space, values, matrix)
-
-
-def _crossed(surface: Surface, points: Array, start: Array, along: Array) -> Array:
-    """(n1, k, 3) where lines of constant ``xi2 = points`` cross lines in plan, one for each
-    abscissa of the ring and near it, that start (n1, 2) somewhere and run along (n1, 2)."""
-    ring = surface.space.bases[0]
     xi = np.stack(np.meshgrid(ring.abscissae, points, indexing="ij"), axis=-1)
+    ends = np.array([surface.net[:, k, :2].mean(axis=0) for k in (0, -1)])
+    part = (points - meridian.breaks[0]) / (meridian.breaks[-1] - meridian.breaks[0])
+    middle = (1.0 - part)[:, None] * ends[0] + part[:, None] * ends[1]
+    turn = 2.0 * np.pi / (ring.breaks[-1] - ring.breaks[0])
+    ray = np.stack([np.cos(turn * ring.abscissae), np.sin(turn * ring.abscissae)], axis=1)
+    inner = np.linalg.norm(surface.net[:, 0, :2] - ends[0], axis=1).mean() * ray
+    rim = surface.at(xi[:, -1], 1).position[:, :2] - ends[1]
+    out = grading.fraction(part)[:, None]
+    aim = (1.0 - out) * inner[:, None] + out * rim[:, None]
     for _ in range(20):
-        k = surface.at(xi, 1)
-        x, y = np.moveaxis(k.position[..., :2] - start[:, None], -1, 0)
+        k = surface.at(xi[:, :-1], 1)
+        x, y = np.moveaxis(k.position[..., :2] - middle[:-1], -1, 0)
         dx, dy = np.moveaxis(k.tangents[..., 0, :2], -1, 0)
-        u, v = along[:, :1], along[:, 1:]
-        step = (u * y - v * x) / (u * dy - v * dx)
-        xi[..., 0] -= step
-        if np.abs(step).max(initial=0.0) <= 1e-14 * (ring.breaks[-1] - ring.breaks[0]):
+        u, v = np.moveaxis(aim[:, :-1], -1, 0)
+        off = np.arctan2(u * y - v * x, u * x + v * y)
+        step = off * (x * x + y * y) / (x * dy - y * dx)
+        xi[:, :-1, 0] -= step
+        if np.abs(step).max() <= 1e-14 * (ring.breaks[-1] - ring.breaks[0]):
             break
-    return surface.at(xi, 1).position
+    return interpolated(space, surface.at(xi, 1).position, matrix)
 
 
 def interpolated(space: Space, values: Array, matrix: Array) -> Surface:
