@@ -151,9 +151,9 @@ def straightened(surface: Surface, grading: Grading) -> Surface:
     where ``xi1`` is the azimuth, to the point of the rim that has it already.
 
     The azimuth is taken about a point that moves with ``xi2`` from the middle of the inner edge to
-    that of the outer one; it is that of the straight line between two such edges in one plane, also
-    where the membrane is steep or overhangs. Where patches meet on a ring, steps along the spines leave bumps of the
-    parametrization beside the joints; without them the space has its full order.
+    that of the outer one; it is that of a straight line between two such edges in one plane, also
+    where the membrane is steep or overhangs. Where patches meet on a ring, steps along the spines
+    leave bumps of the parametrization beside the joints; without them the space has its full order.
     """
     space = surface.space
     ring, meridian = space.bases
