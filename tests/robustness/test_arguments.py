@@ -158,6 +158,7 @@ GIVEN = {
     "Grading": dict,
     "Gravity": lambda: {"density_of_liquid": 1.0, "acceleration": (0.0, 0.0, -1.0)},
     "Joint": dict,
+    "Mirror": lambda: {"edge": "xi2=0"},
     "Liquid": dict,
     "NormalLineLoad": lambda: {"gamma": 1.0, "solid": BALL, "edge": "xi2=0"},
     "Plane": lambda: {"contact_angle": 90.0},
@@ -283,7 +284,8 @@ TAKES = {
         Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge
         Scene.free_particles Scene.substrate Sliding.solid Solution.audit Solution.bracket
         Solution.progress SolverOptions.start SolverOptions.checkpoint Space.pole Space.shared
-        Space.leaders Spines.directions Table.second Table.kinds TrimmedContactLine.toward
+        Space.leaders Space.ruled Spines.directions Table.second Table.kinds
+        TrimmedContactLine.toward
         asperity_cell.liquid asperity_cell.discretization contact_line.solid
         convergence_study.model convergence_study.options critical_value.options drop_space.kink
         film_between_rings.liquid film_between_rings.discretization liquid_sheet.particle
