@@ -42,6 +42,7 @@ def test_equilibrium_does_not_depend_on_where_particle_starts():
     assert heights[0] == pytest.approx(heights[1], abs=1e-7)
 
 
+@pytest.mark.slow
 def test_particle_too_heavy_for_its_line_falls_off():
     """At 150 degrees no contact line carries more than 2 pi gamma r cos^2(75 degrees)."""
     fallen = iga.solve(sheet(150.0, motion="vertical"), on_fail="return")

@@ -63,7 +63,7 @@ def test_point_supports_lower_the_droplet_as_resolved_spots_do(spacing, elements
 @pytest.mark.parametrize(
     ("angle", "share"),
     [
-        (150.0, 0.25),
+        pytest.param(150.0, 0.25, marks=pytest.mark.slow),
         pytest.param(170.0, 0.25, marks=pytest.mark.slow),
         pytest.param(160.0, 0.4, marks=pytest.mark.slow),
         pytest.param(130.0, 0.25, marks=pytest.mark.slow),
@@ -81,7 +81,7 @@ def test_point_supports_have_contact_lines_as_resolved_ones(angle, share):
     assert coarse.measures["A_wet"] == pytest.approx(fine.measures["A_wet"], rel=1e-2)
 
 
-@pytest.mark.parametrize("angle", [165.0, 140.0, 115.0])
+@pytest.mark.parametrize("angle", [165.0, 140.0, pytest.param(115.0, marks=pytest.mark.slow)])
 def test_contact_angles_on_many_small_asperities(angle):
     solution = solved(0.05, None, 0.25, angle)
     assert solution.contact["law"] == "point supports"
@@ -109,8 +109,9 @@ def test_each_asperity_may_have_its_own_contact_angle():
     assert height(140.0, 160.0) == pytest.approx(height(160.0, 140.0), rel=1e-3)
 
 
-def test_point_supports_do_not_hang_on_the_mesh():
-    heights = [lowered(solved(0.03, elements)) for elements in (110, 140, 170)]
+@pytest.mark.parametrize("meshes", [(110, 140), pytest.param((110, 170), marks=pytest.mark.slow)])
+def test_point_supports_do_not_hang_on_the_mesh(meshes):
+    heights = [lowered(solved(0.03, elements)) for elements in meshes]
     assert np.ptp(heights) < 4e-2 * heights[-1]
 
 

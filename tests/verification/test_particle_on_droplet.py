@@ -20,7 +20,14 @@ from particle_scenes import (
 import iga_membrane as iga
 
 
-@pytest.mark.parametrize("case", [(95.0, 90.0, 0.2), (65.0, 110.0, 0.3), (65.0, 75.0, 0.05)])
+@pytest.mark.parametrize(
+    "case",
+    [
+        (95.0, 90.0, 0.2),
+        pytest.param((65.0, 110.0, 0.3), marks=pytest.mark.slow),
+        pytest.param((65.0, 75.0, 0.05), marks=pytest.mark.slow),
+    ],
+)
 def test_forces_converge_and_balance(case):
     """By 1 part in 10,000, at fifth order; both forces on the droplet balance, faster still."""
     meshes = [solved(*case, elements=n) for n in (16, 24, 36)]
