@@ -69,7 +69,17 @@ def test_sheets_leave_a_particle_tangentially(case, tmp_path):
     assert found["psi_deg"] == pytest.approx(-found["phi_deg"], abs=1e-6)
 
 
-@pytest.mark.parametrize("case", CELLS, ids=lambda c: f"p{c['params']['p']}")
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(
+            case,
+            marks=[] if case["exists"] else [pytest.mark.slow],
+            id=f"p{case['params']['p']}",
+        )
+        for case in CELLS
+    ],
+)
 def test_round_cells_of_a_rough_surface(case, tmp_path):
     p = case["params"]
     code, result = solved_by_command(

@@ -43,6 +43,7 @@ def test_square_rim():
         assert found[name] == pytest.approx(exact[name], rel=1e-2), name
 
 
+@pytest.mark.slow
 def test_a_harder_penalty_comes_closer():
     exact = iga.solve(sheet(145.0)).measures["phi_deg"]
     errors = []
