@@ -34,7 +34,7 @@ def lotus() -> iga.Scene:
 def full() -> iga.Scene:
     """Every element of a droplet on a hexagonal lattice."""
     lattice = iga.SphereLattice(180.0, radius=0.05, spacing=0.2, arrangement="hexagonal")
-    mesh = iga.Discretization(model="full", elements=44)
+    mesh = iga.Discretization(model="full")
     return iga.sessile_droplet(lattice, volume=VOLUME, gravity=1.0, discretization=mesh)
 
 

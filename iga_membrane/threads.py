@@ -14,9 +14,8 @@ class _OneThread(ContextDecorator):
     """While any thread of Python is inside, every BLAS of this process runs on one thread; when the
     last one leaves, each has the number back that it had when it was first met.
 
-    Entering costs a tenth of a millisecond, and nothing of note inside another entry. A library
-    that was imported inside, as scipy's BLAS is where a matrix is sparse, is held from the next
-    entry on.
+    Entering costs some 15 microseconds (docs/results/threads.md). A library that was imported
+    inside, as scipy's BLAS is where a matrix is sparse, is held from the next entry on.
     """
 
     def __init__(self) -> None:
