@@ -136,7 +136,7 @@ def test_an_angle_for_each_sphere():
         iga.sessile_droplet(substrate, volume=4.0 * np.pi / 3.0, gravity=1.0), on_fail="return"
     )
     assert solution.success, solution.message
-    assert solution.contact["support_force"] == pytest.approx(4.0 * np.pi / 3.0, rel=1e-5)
+    assert solution.contact["support_force"] == pytest.approx(4.0 * np.pi / 3.0, rel=5e-4)
     for asperity in solution.contact["asperities"]:
         expected = angles[asperity["index"]]
         assert asperity["contact_angle"] == pytest.approx(expected, abs=1.5)
