@@ -29,12 +29,15 @@ from .scene import Ramp, Scene
 from .start import gathered
 from .whole_foot import adhesion
 
-SUNK = 0.01
-"""Depth of the start in the sphere over its radius: contact holds it from the first step."""
+NEARLY = 0.99
+"""Part of the largest pressure from which on the way to it begins."""
 SHARP = 175.0
 """Contact angle in degrees above which the default mesh does not resolve a contact line."""
 PER_RADIUS = 16
 """Elements along the sphere's radius, by default."""
+NARROW = 0.2
+"""Gap between sphere and walls over the radius below which the default mesh is finer. Near the
+largest pressure a round cell's gap of 0.1 needs twice the elements, one of 0.25 none more."""
 
 
 @checked(
@@ -88,7 +91,8 @@ def asperity_cell(
             f"{2.0 * (reach + r):g}"
         )
     along = size / r * (1.0 if shape == "square" else 0.5)
-    mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * along)))
+    fine = max(1.0, NARROW * r / (0.5 * size - reach - r))
+    mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * fine * along)))
     if mesh.space != "bspline":
         raise SceneError(
             f'discretization.space = "{space_name(mesh.space)}": not available yet in a cell; '
@@ -114,8 +118,7 @@ def asperity_cell(
     )
     drape = _drape(pressure * r / liquid.surface_tension, area / r**2, angle, lying)
     local, directions = _start(shape, size / r, unit, drape, mesh)
-    sunk = [0.0, 0.0, unit[2] + 1.0 - (SUNK if lying else 0.0)]
-    surface = local.moved(r * (local.points + sunk))
+    surface = local.moved(r * (local.points + [0.0, 0.0, unit[2] + 1.0]))
     # the wet spot cannot pass the sphere's equator: pi r^2 (p + 2 gamma / r) = p area
     carried = 2.0 * np.pi * r * liquid.surface_tension / (area - np.pi * r**2)
     law = None if penalty is None else penalty * liquid.surface_tension / r**2
@@ -133,12 +136,22 @@ def asperity_cell(
             contact_line=contact_line,
         )
 
+    begin, beyond = 0.5 * pressure, lying and pressure >= carried
+    if beyond:
+        begin = NEARLY * carried
+
     return Scene(
         surface,
         [
             SurfaceTension(liquid.surface_tension),
             Pressure(pressure),
-            Contact(sphere, law, penetration_tolerance, adhesion(liquid, angle))
+            Contact(
+                sphere,
+                law,
+                penetration_tolerance,
+                adhesion(liquid, angle),
+                traction=pressure + 2.0 * liquid.surface_tension / r,
+            )
             if lying
             else TrimmedContactLine(liquid.surface_tension, sphere),
         ],
@@ -146,7 +159,11 @@ def asperity_cell(
         scale=Scale(r, liquid.surface_tension),
         directions=directions,
         ramp=Ramp(
-            "cell.pressure", (0.5 * pressure, pressure), at, bound=carried if lying else None
+            "cell.pressure",
+            (begin, pressure),
+            at,
+            only=beyond,
+            bound=carried if lying else None,
         ),
         substrate=sphere,
         kind="asperity_cell",

@@ -66,6 +66,21 @@ class Ramp:
         """The parameter at a load in [0, 1]."""
         return float(np.interp(load, self.stops, self.values))
 
+    def short_of_bound(self, load: float) -> float:
+        """Distance of the value at a load from the bound, over it; infinite without one."""
+        return np.inf if self.bound is None else 1.0 - self.value(load) / self.bound
+
+    def load_at_bound(self, after: float) -> float:
+        """The first load after another at which the value is the bound, which it passes."""
+        assert self.bound is not None
+        stops = self.stops[self.stops > after]
+        loads = np.concatenate([[after], stops])
+        values = [self.value(load) for load in loads]
+        first = int(np.argmax(np.array(values) >= self.bound))
+        before = values[first - 1]
+        part = (self.bound - before) / (values[first] - before)
+        return float(loads[first - 1] + part * (loads[first] - loads[first - 1]))
+
     def __call__(self, load: float) -> Scene:
         value = self.value(load)
         scene = self.scene_at(value)
@@ -256,6 +271,13 @@ class Scene:
                 f'terms: the solid of "{term.name}" has no mirror plane for {plane}, the '
                 f'"{self.sector.model}" model has: take a larger model'
             )
+
+    def bound(self, parameter: str) -> float | None:
+        """Value of a parameter from which on a balance of forces rules out every equilibrium, where
+        it is known."""
+        return (
+            self.ramp.bound if self.ramp is not None and self.ramp.parameter == parameter else None
+        )
 
     @property
     def line_inside(self) -> str | None:

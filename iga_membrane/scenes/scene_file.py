@@ -149,8 +149,7 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     fixed["discretization"] = {"model": model, "elements": max(meshes)} | mesh
     end = at(values[-1])
     description = dict(end.description) | {"path": [{"parameter": parameter, "values": values}]}
-    bound = end.ramp.bound if end.ramp is not None and end.ramp.parameter == parameter else None
-    ramp = Ramp(parameter, values, at, asked=True, bound=bound)
+    ramp = Ramp(parameter, values, at, asked=True, bound=end.bound(parameter))
     return replace(end, ramp=ramp, description=description)
 
 

@@ -49,6 +49,8 @@ POINTS = 6
 """Quadrature points in contact on every wet asperity, in the mean, that resolve its spot."""
 SETTLED = 1e-6
 """Gap of an active point over the contact length that counts as none."""
+LIES = 2e-4
+"""Gap of a start that lies on its solid, over the contact length: what its spline misses there."""
 TINY = 1e-300
 GIVEN = 3e-5
 """Depth by compliance over the contact length below which gaps count as none by the depth."""
@@ -116,6 +118,8 @@ class ContactSet:
         # element
         self._range = RANGE * np.sqrt(2.0 * adhesion * self._size)[:, None]
         self._soft = np.maximum(SOFT * self.length**2, self._hard)
+        if law.traction:
+            self._soft = self._hard  # no gap has to be made by giving way
         if isinstance(solid, Plane):
             self._soft = self._hard / HARDER  # a plane has no length; the start lies on it
         self.delta: Array = self._soft if penalty is None else np.array(1.0 / penalty)
@@ -147,6 +151,13 @@ class ContactSet:
 
     def hold(self, points: Array) -> None:
         """Take note of a state that steps lead away from; gaps have no memory."""
+
+    def expect(self, points: Array, traction: float) -> None:
+        """Begin with a traction wherever the membrane with these control points lies."""
+        if self.exact:
+            self.multipliers = np.where(
+                self._nearest(points).gap <= LIES * self.length, traction, 0.0
+            )
 
     def begin(self) -> None:
         """Soft again and without lifts, from the multipliers at hand."""

@@ -156,7 +156,13 @@ def load_stepping(
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
     while path.last_good < 1.0:
         stop = float(stops[np.searchsorted(stops, path.last_good, "right")])
+        if ramp.short_of_bound(path.last_good) <= BRACKET:
+            _bounded(path, ramp, path.result.index)
+            break
         load = min(stop, path.last_good + step)
+        if ramp.short_of_bound(load) <= 0.0:
+            # what the bound rules out is not tried: half the way to it
+            load = path.last_good + 0.5 * (ramp.load_at_bound(path.last_good) - path.last_good)
         scene = ramp(load)
         phase = replace(attempts, phase=f"load {load:.3g}")
         result = _attempt(assembly, path, scene, phase)
@@ -262,14 +268,8 @@ def _give_up(
     a step before the last good load must end about where the attempts fail.
     """
     lo, hi = ramp.value(path.last_good), ramp.value(load)
-    bound = ramp.bound
-    if bound is not None and lo < bound <= ramp.values[-1] and bound - lo <= BOUNDED * bound:
-        path.result.status = Status.LIMIT_POINT
-        path.bracket = Bracket(ramp.parameter, lo, bound, path.result.index, failed.index)
-        path.result.message = (
-            f"no equilibrium from {ramp.parameter} = {bound:.6g} on, by the balance of forces "
-            f"({ramp.values[-1]:.6g} was asked for); found up to {lo:.6g}"
-        )
+    if ramp.short_of_bound(path.last_good) <= BOUNDED and ramp.short_of_bound(1.0) <= 0.0:
+        _bounded(path, ramp, failed.index)
         return
     step = load - path.last_good
     back = max(0.0, path.last_good - step)
@@ -301,6 +301,18 @@ def _give_up(
     path.result.message = (
         f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.values[-1]:.6g}, with "
         f"steps of {hi - lo:.1e} ({reason})"
+    )
+
+
+def _bounded(path: LoadPath, ramp: Ramp, index: int) -> None:
+    """End a path at the ramp's known bound."""
+    lo, bound = ramp.value(path.last_good), ramp.bound
+    assert bound is not None
+    path.result.status = Status.LIMIT_POINT
+    path.bracket = Bracket(ramp.parameter, lo, bound, path.result.index, index)
+    path.result.message = (
+        f"no equilibrium from {ramp.parameter} = {bound:.6g} on, by the balance of forces "
+        f"({ramp.values[-1]:.6g} was asked for); found up to {lo:.6g}"
     )
 
 

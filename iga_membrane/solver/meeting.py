@@ -45,7 +45,9 @@ def contact_of(scene: Scene, surface: Surface, points: tuple[int, int]) -> Conta
     points = (1, 1) if term.penalty is None else points
     table = sector_table(surface.space, scene.sector, points)
     area = vary.element_points(table, surface.points).area * table.weights
-    return ContactSet(term, table, area, surface.space, elements)
+    contact = ContactSet(term, table, area, surface.space, elements)
+    contact.expect(surface.points, term.traction)
+    return contact
 
 
 def trim_of(

@@ -123,7 +123,9 @@ def trace(
     SolveError
     """
     asked = tuple(values)
-    ramp = Ramp(parameter, asked, lambda value: called(scene_at, value), asked=True)
+    end = called(scene_at, asked[-1]) if asked else None
+    bound = end.bound(parameter) if isinstance(end, Scene) else None
+    ramp = Ramp(parameter, asked, lambda value: called(scene_at, value), asked=True, bound=bound)
     options = SolverOptions() if options is None else options
     options.check_folder()
     begin()

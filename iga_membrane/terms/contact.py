@@ -40,6 +40,7 @@ class Ring:
     depth="solver.penetration_tolerance",
     adhesion=NOT_NEGATIVE,
     compliance=NOT_NEGATIVE,
+    traction=NOT_NEGATIVE,
 )
 class Contact(Term):
     """The gap to a solid is not negative, paper section 4.
@@ -63,6 +64,7 @@ class Contact(Term):
     adhesion: float = 0.0
     ring: Ring | None = None
     compliance: float = 0.0
+    traction: float = 0.0
     name = "contact"
 
     def scaled(self, scale: Scale) -> Contact:
@@ -71,4 +73,5 @@ class Contact(Term):
         adhesion = self.adhesion / scale.tension
         solid = scale.local_solid(self.solid)
         ring = None if self.ring is None else self.ring.scaled(scale)
-        return Contact(solid, eps, self.depth, adhesion, ring, self.compliance / unit)
+        traction = self.traction * scale.length / scale.tension
+        return Contact(solid, eps, self.depth, adhesion, ring, self.compliance / unit, traction)

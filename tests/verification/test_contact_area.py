@@ -207,3 +207,63 @@ def test_bad_cells_are_refused_by_name(values, said):
     good = {"size": SIZE, "pressure": PRESSURE}
     with pytest.raises(iga.SceneError, match=said):
         iga.asperity_cell(iga.Sphere(180.0, RADIUS, (0, 0, -RADIUS)), **(good | values))
+
+
+def largest_pressure(shape, size):
+    """The spot's projected area is at most the sphere's disc: (p + 2 / r) pi r^2 = p A."""
+    area = size**2 if shape == "square" else 0.25 * np.pi * size**2
+    return 2.0 * np.pi / (area - np.pi)
+
+
+def cell_at(shape, size, part):
+    return iga.asperity_cell(
+        iga.Sphere(contact_angle=180.0, radius=1.0, center=(0.0, 0.0, -1.0)),
+        size=size,
+        shape=shape,
+        pressure=part * largest_pressure(shape, size),
+    )
+
+
+@pytest.mark.parametrize(
+    ("shape", "size", "part"),
+    [("circle", 4.0, 0.99), ("circle", 2.6, 0.97), ("square", 3.4, 0.995), ("circle", 5.0, 0.4)],
+)
+def test_a_cell_is_solved_up_to_its_largest_pressure(shape, size, part):
+    """sin(phi)^2 = p A / (pi r^2 (p + 2 gamma / r)), in round and square cells alike."""
+    found = iga.solve(cell_at(shape, size, part))
+    pressure = part * largest_pressure(shape, size)
+    area = size**2 if shape == "square" else 0.25 * np.pi * size**2
+    assert found.measures["F_sphere"] == pytest.approx(pressure * area, rel=1e-9)
+    sine = np.sqrt(pressure * area / (np.pi * (pressure + 2.0)))
+    assert np.sin(np.radians(found.measures["phi_deg"])) == pytest.approx(sine, rel=1e-6)
+    assert len(found.load_steps) == 1
+
+
+@pytest.mark.parametrize(
+    ("shape", "size", "part"),
+    [("circle", 4.0, 1.001), ("circle", 3.0, 2.0), ("square", 4.0, 1.2)],
+)
+def test_a_cell_beyond_its_largest_pressure_is_bracketed_there(shape, size, part):
+    found = iga.solve(cell_at(shape, size, part), on_fail="return")
+    most = largest_pressure(shape, size)
+    assert found.status is iga.Status.LIMIT_POINT
+    assert found.bracket.hi == pytest.approx(most, rel=1e-12)
+    assert 0.0 < found.bracket.hi - found.bracket.lo <= 1e-3 * most
+    assert found.measures["phi_deg"] > 88.0
+    assert len(found.load_steps) <= 12
+
+
+def test_a_path_of_pressures_ends_at_the_largest():
+    most = largest_pressure("circle", 4.0)
+    values = [0.5 * most, 0.9 * most, 1.3 * most]
+    path = iga.trace(
+        lambda p: cell_at("circle", 4.0, p / most),
+        values,
+        parameter="cell.pressure",
+        on_fail="return",
+    )
+    last = path.end
+    assert len(path.solutions) == 2
+    assert last.status is iga.Status.LIMIT_POINT
+    assert last.bracket.lo < most <= last.bracket.hi * (1.0 + 1e-12)
+    assert last.bracket.hi - last.bracket.lo <= 1e-3 * most
