@@ -46,7 +46,11 @@ def encode(value: Any, arrays: dict[str, Array]) -> Any:
     if isinstance(value, Mapping):
         return {"map": [[str(key), encode(item, arrays)] for key, item in value.items()]}
     if is_dataclass(value) and not isinstance(value, type):
-        inside = {f.name: encode(getattr(value, f.name), arrays) for f in fields(value) if f.init}
+        inside = {
+            f.name: encode(getattr(value, f.name), arrays)
+            for f in fields(value)
+            if f.init and f.metadata.get("kept", True)
+        }
         return {"record": _name(type(value)), "fields": inside}
     if isinstance(value, tuple):
         return {"tuple": [encode(item, arrays) for item in value]}

@@ -32,8 +32,15 @@ def from_another_angle(scene: Scene, terms: Sequence[Term], built: Foot) -> Scen
         """The scene at contact angles of at least ``angle``."""
         raised = with_angle(solid, angle)
         line = replace(built.terms[0], solid=raised)  # type: ignore[type-var]
-        near = replace(scene, terms=[*terms, *built.predictor], ramp=None)
-        return replace(scene, terms=[*terms, line], substrate=raised, ramp=None, predictor=near)
+        near = replace(scene, terms=[*terms, *built.predictor], ramp=None, origin=None)
+        return replace(
+            scene,
+            terms=[*terms, line],
+            substrate=raised,
+            ramp=None,
+            predictor=near,
+            origin=None,
+        )
 
     least, good = float(np.min(solid.contact_angle)), PREDICTABLE[0]
     if least < good:
@@ -67,7 +74,8 @@ def from_alone(scene: Scene, alone: Scene) -> Scene:
             every[len(every) - len(turned) :] = turned
             return replace(term, solid=replace(term.solid, contact_angle=every))
 
-        return replace(scene, terms=[through(t) for t in scene.terms], ramp=None, predictor=alone)
+        turned_terms = [through(t) for t in scene.terms]
+        return replace(scene, terms=turned_terms, ramp=None, predictor=alone, origin=None)
 
     values = float(easy[lead]), float(angles[lead])
     ramp = Ramp(f"particle[{lead}].contact_angle", values, at)

@@ -250,7 +250,7 @@ def sessile_droplet(
         else:
             # it must not roll away from its particles
             bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
-            alone = from_another_angle(replace(scene, particles=()), bare, built.alone)
+            alone = from_another_angle(replace(scene, particles=(), origin=None), bare, built.alone)
         scene = replace(scene, start_from=built.start_from)
         scene = from_alone(scene, alone)
         assert isinstance(line, (TrimmedContactLine, SphereContactLine))
@@ -264,8 +264,8 @@ def sessile_droplet(
     if not built.tangent:
         return scene
 
-    def edge_at(radius: float) -> Scene:
-        return replace(scene, surface=with_rim(built.surface, radius, scale))
+    def edge_at(of: Scene, radius: float) -> Surface:
+        return with_rim(of.surface, radius, of.units)
 
     return replace(scene, free_edge=FreeEdge(edge_at, rim_radius))
 

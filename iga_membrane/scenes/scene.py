@@ -19,12 +19,8 @@ from ..surface.supports import Fixed, Sector, Sliding, Support, Symmetry
 from ..surface.surface import Surface
 from ..terms import (
     BodyTerm,
-    Centroid,
     Constraint,
     Contact,
-    GapTerm,
-    LineTerm,
-    LocalGap,
     PlaneContactLine,
     Scale,
     SphereContactLine,
@@ -33,6 +29,8 @@ from ..terms import (
     TrimmedContactLine,
 )
 from ..terms.own import scaled_term
+from .changed import Origin, adapted, origin_of
+from .well_posed import check_mirrors, check_parts
 
 
 @dataclass(frozen=True)
@@ -95,13 +93,17 @@ class FreeEdge:
 
     Attributes
     ----------
-    scene_at : coordinate of the edge on the solid, a radius or an angle, to a scene whose edge is
-        fixed there.
+    surface_at : a scene and a coordinate of the edge on its solid, a radius or an angle, to a start
+        whose edge is there.
     place_of : the coordinate of a surface's edge, in the scene's scale.
     """
 
-    scene_at: Callable[[float], Scene] = field(repr=False)
+    surface_at: Callable[[Scene, float], Surface] = field(repr=False)
     place_of: Callable[[Surface], float] = field(repr=False)
+
+    def fixed_at(self, scene: Scene, place: float) -> Scene:
+        """A scene with its edge at another place."""
+        return replace(scene, surface=self.surface_at(scene, place))
 
 
 @dataclass(frozen=True)
@@ -165,6 +167,8 @@ class Scene:
     kind : name of the family, which decides the measures of a solution.
     description : the scene in words of the scene file, for the result.
     warnings : what a user should know about the input.
+    origin : what the ways were made for; None makes them this scene's own. A scene of which fields
+        were replaced leaves out the ways of the one before (:mod:`.changed`).
     """
 
     surface: Surface
@@ -189,88 +193,20 @@ class Scene:
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     warnings: Sequence[str] = ()
+    origin: Origin | None = field(default=None, repr=False, compare=False, metadata={"kept": False})
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "terms", tuple(self.terms))
         object.__setattr__(self, "supports", tuple(self.supports))
-        space = self.surface.space
-        splines = any(basis.knots is not None for basis in space.bases)
-        if space.continuity < 1 and (splines or space.weights is not None):
-            raise SceneError("surface: C1 needed between the elements of a spline space")
-        names = [term.name for term in self.terms]
-        for name in names:
-            if names.count(name) > 1 and name not in ("gravity", "wetting"):
-                raise SceneError(f'terms: "{name}" is listed {names.count(name)} times')
-        if "pressure" in names and "volume" in names:
-            raise SceneError("terms: pressure and volume are both prescribed; give one of them")
-        sliding = [s.edge for s in self.supports if isinstance(s, Sliding)]
-        for term in self.terms:
-            if isinstance(term, LineTerm) and term.edge in sliding and term.strength >= term.gamma:
-                raise SceneError(
-                    "contact_angle = 180: a contact line that slides freely has no place at 180 "
-                    "degrees, where the foot is a contact area; build the scene by "
-                    "sessile_droplet or liquid_sheet, or hold the edge by Fixed"
-                )
-        if self.directions is not None and len(self.directions) != space.count:
-            raise SceneError(
-                f"directions: {len(self.directions)} given, one for each of the {space.count} "
-                "control points is needed"
-            )
-        self._check_gaps()
-        if "surface_tension" not in names:
-            raise SceneError("terms: a membrane needs a SurfaceTension")
+        if self.origin is not None:
+            for name, value in adapted(self, self.origin).items():
+                object.__setattr__(self, name, value)
+        check_parts(self)
         if self.scale is None:
             tension = next(t.gamma for t in self.terms if isinstance(t, SurfaceTension))
             object.__setattr__(self, "scale", Scale(self.surface.size, tension))
-
-        self._check_mirrors()
-
-    def _check_gaps(self) -> None:
-        """Refuse a law of the gap where its variations are not known."""
-        name = next((t.name for t in self.terms if isinstance(t, GapTerm)), None)
-        if name is not None and self.motion != "spines":
-            raise SceneError(f'terms: "{name}" needs motion = "spines"')
-        lines = [t.name for t in self.terms if isinstance(t, (LineTerm, TrimmedContactLine))]
-        if name is not None and lines:
-            raise SceneError(
-                f'terms: "{name}" changes the tension at the contact line "{lines[0]}", which is '
-                "not available yet; a law of the gap needs fixed edges, or a membrane that lies on "
-                "its substrate (180 degrees)"
-            )
-
-    def _check_mirrors(self) -> None:
-        """Refuse a model whose mirror planes the terms do not have."""
-        model, mirrored = self.sector.model, self.sector.mirrored
-        for term in self.terms:
-            if isinstance(term, Centroid) and term.axis in mirrored:
-                raise SceneError(
-                    f'terms: the "{model}" model is symmetric in {term.axis}; a Centroid along '
-                    f"{term.axis} holds nothing there: leave it out or take a larger model"
-                )
-        for axis in mirrored:
-            if axis in self.lateral_load:
-                raise SceneError(
-                    f'discretization.model = "{model}": gravity leans to {axis}, so the scene has '
-                    f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
-                    "model here"
-                )
-        here = self.units.to_local(self.surface.points)
-        for term in self.local_terms():
-            for k, axis in enumerate("xyz"):
-                if isinstance(term, LocalGap) and axis in mirrored:
-                    there = here * np.where(np.arange(3) == k, -1.0, 1.0)
-                    self._check_mirror(term, here, there, axis)
-            if isinstance(term, LocalGap) and model == "eighth":
-                self._check_mirror(term, here, here[:, [1, 0, 2]], "x = y")
-
-    def _check_mirror(self, term: LocalGap, here: Array, there: Array, plane: str) -> None:
-        """Refuse a law of the gap to a solid without a mirror plane of the model."""
-        off = np.abs(term.at(there).at.gap - term.at(here).at.gap).max()
-        if not off <= 1e-9:
-            raise SceneError(
-                f'terms: the solid of "{term.name}" has no mirror plane for {plane}, the '
-                f'"{self.sector.model}" model has: take a larger model'
-            )
+        check_mirrors(self)
+        object.__setattr__(self, "origin", origin_of(self))
 
     def bound(self, parameter: str) -> float | None:
         """Value of a parameter from which on a balance of forces rules out every equilibrium, where

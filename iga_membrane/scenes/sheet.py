@@ -220,8 +220,8 @@ def _free_edge(scene: Scene) -> FreeEdge:
     assert isinstance(particle, Sphere)
     ball = Scale(particle.radius).local_sphere(particle)
 
-    def edge_at(polar: float) -> Scene:
-        return replace(scene, surface=_with_edge(scene.surface, particle, polar))
+    def edge_at(of: Scene, polar: float) -> Surface:
+        return _with_edge(of.surface, particle, polar)
 
     return FreeEdge(edge_at, lambda at: _edge_polar(at, ball))
 

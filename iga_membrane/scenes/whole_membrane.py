@@ -225,7 +225,7 @@ def _stepped(
     held = scene.terms[: len(scene.terms) - len(line(EASY))]
 
     def at(angle: float) -> Scene:
-        return replace(scene, terms=[*held, *line(angle)], ramp=None)
+        return replace(scene, terms=[*held, *line(angle)], ramp=None, origin=None)
 
     angles = np.linspace(first.contact_angle, solid.contact_angle, how.load_steps + 1)
     values = tuple(float(a) for a in angles)

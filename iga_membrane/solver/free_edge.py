@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..scenes.scene import FreeEdge, Scene
+from ..scenes.scene import Scene
 from .assembly import Assembly
 from .audit import stands_free
 from .contact_line import contact_line, vertical_forces
@@ -31,22 +31,22 @@ SHORTEST = 1e-6
 
 
 def tangent_edge(
-    scene: Scene, edge: FreeEdge, assembly: Assembly, options: NewtonOptions
+    asked: Scene, assembly: Assembly, options: NewtonOptions
 ) -> tuple[Scene, NewtonResult]:
     """Scene with its edge in place, and its state with the iterations of every solve.
 
     Parameters
     ----------
-    scene : its surface is the start, with the edge where it is foretold.
+    asked : its surface is the start, with the edge where it is foretold.
     """
-    grading = scene.meridian_grading
-    assert grading is not None
+    edge, scene, grading = asked.free_edge, asked, asked.meridian_grading
+    assert edge is not None
     surface, multipliers, iterations = scene.local_surface(), None, []
     place = good = foretold = edge.place_of(surface)
     before: tuple[float, float] | None = None
     for _ in range(TRIES):
-        start = edge.scene_at(good).local_surface().points
-        scene = edge.scene_at(place)
+        start = edge.fixed_at(asked, good).local_surface().points
+        scene = edge.fixed_at(asked, place)
         assembly.load(scene)
         moved = surface.moved(surface.points + scene.local_surface().points - start)
         result = newton(assembly, moved, multipliers, grading, options)

@@ -15,10 +15,11 @@ from ..arrays import Array
 from ..checks import integer, items, mapping, real
 from ..own import complaints
 from ..scenes.scene import Scene
+from ..solids import Sphere
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
 from ..tables import dataframe
-from ..terms import BodyDensity, Gravity, SurfaceTension
+from ..terms import BodyDensity, Gravity, SurfaceTension, Volume
 from .evidence import Audit
 from .forces import ParticleForces
 from .load_stepping import Bracket, LoadStep, Progress
@@ -117,11 +118,17 @@ class Solution:
         """
         scene = self.scene
         weights = [
-            term.density_of_liquid * float(np.linalg.norm(term.acceleration))
+            term.density_of_liquid * np.array(term.acceleration)
             for term in scene.terms
             if isinstance(term, Gravity)
-        ] or [scene.liquid_density * float(np.linalg.norm(scene.acceleration))]
-        found = {"bond_number": weights[0] * scene.units.length**2 / self._tension}
+        ] or [scene.liquid_density * np.array(scene.acceleration)]
+        weight, length = float(np.linalg.norm(np.sum(weights, axis=0))), scene.units.length
+        volume = next((term.value for term in scene.terms if isinstance(term, Volume)), None)
+        if scene.kind == "sessile_droplet" and volume is not None:
+            length = float(np.cbrt(3.0 * volume / (4.0 * np.pi)))
+        elif scene.kind == "liquid_sheet" and isinstance(scene.substrate, Sphere):
+            length = scene.substrate.radius
+        found = {"bond_number": weight * length**2 / self._tension}
         if scene.kind == "sessile_droplet":
             for name in ("contact_angle_measured", "apparent_angle"):
                 if name in self.measures:

@@ -14,6 +14,7 @@ from ..arguments import checked
 from ..errors import SceneError, SolveError
 from ..own import begin
 from ..scenes.scene import Scene
+from ..scenes.well_posed import check_held
 from ..terms.own import check_own_terms
 from ..threads import one_thread
 from .assembly import Assembly
@@ -71,6 +72,7 @@ def solve(
     options.check_folder()
     if options.follow_instability:
         check_followed(scene)
+    check_held(scene)
     started = thread_time()
     if scene.free_particles is not None:
         return _delivered(_with_free_particles(scene, options, started), on_fail)
@@ -235,7 +237,7 @@ def _iterate(
     if scene.motion == "cartesian":
         return Outcome(scene, *quasi_static(scene, assembly, settings, report))
     if scene.free_edge is not None:
-        found, state = tangent_edge(scene, scene.free_edge, assembly, settings)
+        found, state = tangent_edge(scene, assembly, settings)
         return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
     if scene.ramp is not None and scene.ramp.only:
         path = _stepped(scene, assembly, settings, options, report)
