@@ -267,7 +267,17 @@ def sessile_droplet(
     def edge_at(of: Scene, radius: float) -> Surface:
         return with_rim(of.surface, radius, of.units)
 
-    return replace(scene, free_edge=FreeEdge(edge_at, rim_radius))
+    def foretold(of: Scene) -> Surface:
+        held = next((t.value for t in of.terms if isinstance(t, Volume)), volume)
+        weight = tuple(of.acceleration), of.liquid_density
+        own = tuple(float(g) for g in acceleration), liquid.density
+        if (held, weight) == (volume, own) or not any(weight[0]):
+            return of.surface
+        heavy = replace(liquid, density=of.liquid_density)
+        fresh = again(volume=held, gravity=of.acceleration, liquid=heavy)
+        return of.surface.moved(fresh.surface.points)
+
+    return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, foretold))
 
 
 def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:

@@ -96,10 +96,12 @@ class FreeEdge:
     surface_at : a scene and a coordinate of the edge on its solid, a radius or an angle, to a start
         whose edge is there.
     place_of : the coordinate of a surface's edge, in the scene's scale.
+    foretold : a scene to its start, with the edge where its own weight and volume foretell it.
     """
 
     surface_at: Callable[[Scene, float], Surface] = field(repr=False)
     place_of: Callable[[Surface], float] = field(repr=False)
+    foretold: Callable[[Scene], Surface] = field(repr=False)
 
     def fixed_at(self, scene: Scene, place: float) -> Scene:
         """A scene with its edge at another place."""

@@ -223,7 +223,7 @@ def _free_edge(scene: Scene) -> FreeEdge:
     def edge_at(of: Scene, polar: float) -> Surface:
         return _with_edge(of.surface, particle, polar)
 
-    return FreeEdge(edge_at, lambda at: _edge_polar(at, ball))
+    return FreeEdge(edge_at, lambda at: _edge_polar(at, ball), lambda of: of.surface)
 
 
 def _edge_polar(surface: Surface, ball: Sphere) -> float:

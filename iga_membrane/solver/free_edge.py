@@ -7,6 +7,8 @@ secant method over Newton solves that start from one another.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..scenes.scene import Scene
@@ -39,8 +41,9 @@ def tangent_edge(
     ----------
     asked : its surface is the start, with the edge where it is foretold.
     """
-    edge, scene, grading = asked.free_edge, asked, asked.meridian_grading
+    edge, grading = asked.free_edge, asked.meridian_grading
     assert edge is not None
+    asked = scene = replace(asked, surface=edge.foretold(asked))
     surface, multipliers, iterations = scene.local_surface(), None, []
     place = good = foretold = edge.place_of(surface)
     before: tuple[float, float] | None = None
