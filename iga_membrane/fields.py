@@ -73,6 +73,7 @@ FIELDS: dict[str, Rule] = {
     "solver.contact_line": words("auto", "conforming", "trimmed", "adhesion", "line_load"),
     "solver.start": either(words("auto", "flat", "above", "touching"), state_file),
     "solver.follow_instability": flag,
+    "solver.stability": words("full", "model"),
     "solver.max_cpu_s": POSITIVE,
     "solver.max_memory_gb": POSITIVE,
     "path.parameter": text,

@@ -33,7 +33,7 @@ def test_a_solved_scene_writes_result_state_and_surface(scene, tmp_path, capsys)
     result = json.loads((out / "result.json").read_text())
     assert result["schema"] == 1
     assert result["success"] is True
-    assert result["stability_scope"] == "eighth"
+    assert result["stability_scope"] == "full"
     assert result["index"] == 0
     assert result["lambda_min"] > 0
     assert set(result["cpu_seconds"]) == {

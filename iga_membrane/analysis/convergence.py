@@ -21,13 +21,14 @@ from ..fields import FIELDS
 from ..files import write_whole
 from ..optional import optional
 from ..own import called
-from ..scenes.liquid import Discretization, Model, space_name
+from ..scenes.liquid import Discretization, space_name
 from ..scenes.scene import Scene
 from ..solver.options import SolverOptions
 from ..solver.solution import Solution
 from ..solver.solve import solve
 from ..solver.status import Status
 from ..splines import BasisOf
+from ..surface.supports import Model
 
 COSTS = {"unknowns": "unknowns", "cpu": "CPU seconds", "memory": "peak memory, MB"}
 

@@ -15,9 +15,9 @@ from ..errors import SceneError
 from ..solids import Solid, Sphere, Spheres
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
+from ..surface.supports import Model
 from ..surface.surface import Surface
 from .beside import mirrored_model
-from .liquid import Model
 from .pattern import (
     FEW,
     FINE,

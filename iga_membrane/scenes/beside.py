@@ -10,8 +10,9 @@ from ..arrays import Array
 from ..checks import record
 from ..errors import SceneError
 from ..solids import Sphere, Spheres
+from ..surface.supports import Model
 from ..surface.surface import Surface
-from .liquid import MODELS, Model
+from .liquid import MODELS
 
 FAR = 0.3
 """Gap between a particle and the start, over the droplet's length, that no meniscus spans."""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal
+from typing import Any
 
 from ..arguments import checked
 from ..checks import either, function
 from ..errors import SceneError
 from ..fields import FIELDS
 from ..splines import BasisOf
+from ..surface.supports import Model
 
-Model = Literal["full", "half", "quarter", "eighth"]
 MODELS: tuple[Model, ...] = ("full", "half", "quarter", "eighth")
 
 

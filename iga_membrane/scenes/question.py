@@ -11,10 +11,10 @@ from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Solid, Sphere
 from ..splines import Grading
-from ..surface.supports import Sector, Support
+from ..surface.supports import Model, Sector, Support
 from ..surface.surface import Surface
 from ..terms import Contact, Scale, Term
-from .liquid import MODELS, Discretization, Liquid, Mesh, Model
+from .liquid import MODELS, Discretization, Liquid, Mesh
 
 BALL = 4.0 * np.pi / 3.0
 """Volume of a droplet in its own scale."""

@@ -240,7 +240,8 @@ def solver_limits(table: Mapping[str, Any], kind: str) -> dict[str, Any]:
     limits: dict[str, Any] = {
         key: float(table[key]) for key in ("max_cpu_s", "max_memory_gb") if key in table
     }
-    if "follow_instability" in table:
-        limits["follow_instability"] = table["follow_instability"]
+    for key in ("follow_instability", "stability"):
+        if key in table:
+            limits[key] = table[key]
     start = table.get("start", "auto")
     return limits | {"start": start} if start.endswith(".npz") else limits

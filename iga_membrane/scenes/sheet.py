@@ -25,7 +25,7 @@ from ..surface.ring import (
     square,
 )
 from ..surface.shapes import sheet as flat_square
-from ..surface.supports import Fixed, Sector, Sliding, Support
+from ..surface.supports import Fixed, Model, Sector, Sliding, Support
 from ..surface.surface import Surface
 from ..terms import (
     Gravity,
@@ -39,7 +39,7 @@ from ..terms import (
 )
 from ..units import implausible
 from .description import described_particle
-from .liquid import MODELS, Discretization, Liquid, Mesh, Model, with_defaults
+from .liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
 from .moving import moving
 from .scene import FreeEdge, Ramp, Scene
 from .sheet_through import sheet_through

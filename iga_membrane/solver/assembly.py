@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from time import thread_time
 
@@ -18,7 +19,7 @@ from ..terms import variations as vary
 from . import inside_lines
 from .functional import Energies, Functional
 from .linear import Matrix
-from .rows import FirstOrder
+from .rows import FirstOrder, Released
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +142,8 @@ class Assembly(Functional):
         at = vary.element_points(self.table, points)
         energies = self.energies_at(points, at)
         first = self._first_order(points, directions, at)
-        matrix = self._second_order(points, directions, at, multipliers)
+        load = self.line_load(multipliers)
+        matrix = self._second_order(points, directions, at, self.density(multipliers), load)
         self.seconds += thread_time() - start
         scale = first.scale + np.abs(first.columns) @ np.abs(multipliers)
         size = max(float(np.linalg.norm(scale)), TINY * self.tension)
@@ -174,13 +176,36 @@ class Assembly(Functional):
         self.edges.add_forces(total, points, self.body, self.held)
         return total
 
+    def hessian(
+        self, surface: Surface, directions: Array, body: BodyDensity, load: Array
+    ) -> Matrix:
+        """Hessian of the Lagrangian with a body density and the line loads (count,) of edges held
+        on solids."""
+        at = vary.element_points(self.table, surface.points)
+        return self._second_order(surface.points, directions, at, body, load)
+
+    def released(self) -> Assembly:
+        """The same state by rows of the motion, each an unknown: what the computed part alone
+        contributes, to be summed as any motions of the whole ask for it."""
+        free = copy(self)
+        free.rows = Released(self.rows)
+        free.spines = free.rows.spines
+        free.edges = self.edges.by(free.rows)
+        free.trim = None if self.trim is None else self.trim.released()
+        return free
+
     def _second_order(
-        self, points: Array, directions: Array, at: vary.ElementPoints, multipliers: Array
+        self,
+        points: Array,
+        directions: Array,
+        at: vary.ElementPoints,
+        body: BodyDensity,
+        load: Array,
     ) -> Matrix:
         """Hessian of the Lagrangian."""
-        body, unknowns = self.density(multipliers), self.rows.unknowns
+        unknowns = self.rows.unknowns
         check_time()
-        matrix = self._matrix()
+        matrix = self.matrix()
         if isinstance(self.spines, Cartesian):
             self._add_by_pairs(matrix, points, directions, at, body)
         else:
@@ -200,7 +225,7 @@ class Assembly(Functional):
             rows = self.contact_rows
             near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
             matrix.add(unknowns(rows.functions[near]), blocks)
-        self.edges.add_hessian(matrix, directions, points, body, self.line_load(multipliers))
+        self.edges.add_hessian(matrix, directions, points, body, load)
         return matrix
 
     def _add_by_pairs(
@@ -230,13 +255,14 @@ class Assembly(Functional):
     def mass(self, surface: Surface, directions: Array) -> Matrix:
         """Mass matrix of normal displacement; of all displacement where tangents move too."""
         at = vary.element_points(self.table, surface.points)
-        matrix = self._matrix()
+        matrix = self.matrix()
         full = self.stabilizer is not None
         for rows, part in self.parts(surface.points, at):
             blocks = vary.mass(rows, part, directions[rows.functions], full=full)
             matrix.add(self.rows.unknowns(rows.functions), blocks)
         return matrix
 
-    def _matrix(self) -> Matrix:
+    def matrix(self) -> Matrix:
+        """An empty matrix of the unknowns."""
         tied = None if self.contact is None else self.contact.tied
         return self.rows.matrix(tied if self.trim is None else self.trim.ties.across[0])

@@ -13,7 +13,6 @@ from ..arrays import Array
 from ..deadline import OutOfTime, until
 from ..errors import GeometryError
 from ..scenes.scene import Scene
-from ..solids import Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import Centroid, Volume
 from .assembly import Assembly
@@ -68,6 +67,7 @@ def conclude(
     surface, multipliers = result.surface, result.multipliers
     verdict, checked, kind, doubt = None, None, None, ""
     status, message = result.status, result.message
+    asked = scene.sector.model if options.stability == "model" else "full"
     if status is Status.TOPOLOGY_CHANGE:
         kind = "touches_in_a_point"  # the edge at 180 degrees has closed
     if status in REMEDY:
@@ -77,7 +77,7 @@ def conclude(
     try:
         with until(started + (1.0 + GRACE) * options.max_cpu_s):
             checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
-            verdict, doubt = _examined(assembly, surface, multipliers)
+            verdict, doubt = _examined(scene, assembly, surface, multipliers, options.stability)
     except OutOfTime as end:
         if status is None:
             status = Status.INTERRUPTED
@@ -130,7 +130,9 @@ def conclude(
         body=assembly.density(multipliers),
         index=verdict.index if verdict else None,
         lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
-        mode=_mode(scene, assembly, surface, verdict) if status in UNSTABLE else None,
+        mode=_mode(scene, verdict) if status in UNSTABLE else None,
+        stability_scope=verdict.scope if verdict else asked,
+        mode_within=verdict.within if verdict else None,
         audit=checked,
         volume_error=_volume_error(scene, inside),
         hold_force=hold,
@@ -147,28 +149,25 @@ def conclude(
             "contact": 0.0,
             "solve": total,
         },
-        warnings=_warnings(scene, contact, found),
+        warnings=_warnings(scene, verdict, asked, found),
     )
 
 
-def _mode(
-    scene: Scene, assembly: Assembly, surface: Surface, verdict: Stability | None
-) -> Array | None:
+def _mode(scene: Scene, verdict: Stability | None) -> Array | None:
     """(count, 3) the softest motion of the control points in world axes, the largest 1."""
     if verdict is None:
         return None
-    motion = assembly.displacement(assembly.motion(surface), verdict.mode)
-    largest = np.linalg.norm(motion, axis=1).max()
-    return np.asarray(motion @ scene.units.axes.T / largest)
+    largest = np.linalg.norm(verdict.mode, axis=1).max()
+    return np.asarray(verdict.mode @ scene.units.axes.T / largest)
 
 
 def _examined(
-    assembly: Assembly, surface: Surface, multipliers: Array
+    scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array, scope: str
 ) -> tuple[Stability | None, str]:
     """Stability of a state, converged or not; or why there is none."""
     with np.errstate(all="ignore"):
         try:
-            verdict = stability_of(assembly, surface, multipliers)
+            verdict = stability_of(scene, assembly, surface, multipliers, scope)
         except (SingularMatrix, GeometryError, np.linalg.LinAlgError, MemoryError) as error:
             return None, str(error)
     if not np.isfinite(verdict.smallest):
@@ -232,35 +231,21 @@ def _named(scene: Scene, assembly: Assembly, multipliers: Array) -> dict[str, fl
     return found
 
 
-MANY = 100
-"""Wet asperities from which on a droplet is as well in one place as in another."""
-
-
 def _warnings(
-    scene: Scene, contact: Mapping[str, Any], found: Mapping[str, Any]
+    scene: Scene, verdict: Stability | None, asked: str, found: Mapping[str, Any]
 ) -> tuple[str, ...]:
-    pinned = [t.axis for t in scene.terms if isinstance(t, Centroid) and t.axis not in scene.hold]
     texts = list(scene.warnings)
-    if pinned:
+    if verdict and verdict.scope != asked:
         texts.append(
-            f"neutral rigid translations along {', '.join(pinned)} are pinned by holding the "
-            "centroid"
+            f"stability is judged within the symmetry of the {verdict.scope} model: the whole "
+            'body\'s is not available yet with solver.motion = "cartesian"; take '
+            'discretization.model = "full"'
         )
+    if verdict and verdict.pinned:
+        texts.append(f"neutral rigid motions are pinned: {', '.join(verdict.pinned)}")
     if "cassie_baxter_angle" in found and found["cassie_baxter_angle"] is None:
         texts.append(
             "cassie_baxter_angle is null: the wet spots are so curved that the cosine of the "
             "formula of Cassie and Baxter leaves [-1, 1]"
         )
-    on_top = isinstance(scene.substrate, (Sphere, SphereLattice, Spheres)) and not scene.hold
-    judged = f"that motion is not in the {scene.sector.model} model, whose stability is judged"
-    if on_top and scene.kind == "sessile_droplet" and scene.sector.mirrored == "xy":
-        wet = contact.get("wet_solids")
-        if wet == 1:
-            moves = "slides off it" if any(scene.acceleration) else "rolls on it freely"
-            texts.append(f"a droplet on one sphere {moves}: {judged}")
-        elif wet and wet <= MANY and not isinstance(scene.substrate, Sphere):
-            texts.append(
-                f"a droplet on {wet} asperities may roll to better ones: {judged}; take "
-                'discretization.model = "full" to see it'
-            )
     return tuple(texts)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from ..arrays import Array, Index
@@ -41,6 +43,12 @@ class EdgeLines:
             for s in scene.local_supports()
             if isinstance(s, Sliding) and s.solid is not None
         ]
+
+    def by(self, rows: Rows) -> EdgeLines:
+        """The same by the unknowns of other rows."""
+        other = copy(self)
+        other._rows = rows
+        return other
 
     @property
     def gap_count(self) -> int:

@@ -11,7 +11,6 @@ from ..surface.inside import inside
 from ..surface.surface import Surface
 from ..terms import (
     BodyTerm,
-    Centroid,
     Constraint,
     Contact,
     LineTerm,
@@ -53,14 +52,7 @@ def judge(
     if verdict.index > 0 and verdict.smallest < 0:
         return Status.CONVERGED_SADDLE, (
             f"equilibrium, but unstable: {verdict.index} motion(s) lower the energy (eigenvalue "
-            f"{verdict.smallest:.3g}); disturb the start to leave it"
-        )
-    pinned = {t.axis for t in scene.terms if isinstance(t, Centroid)}
-    neutral = [axis for axis in scene.loose_axes if axis not in pinned]
-    if neutral:
-        return Status.CONVERGED_MARGINAL, (
-            f"equilibrium, but free to slide along {', '.join(neutral)}; add a Centroid there or "
-            "take a symmetric model"
+            f"{verdict.smallest:.3g}); {_way_out(scene, verdict)}"
         )
     if verdict.marginal or verdict.index > 0:
         return Status.CONVERGED_MARGINAL, (
@@ -70,6 +62,21 @@ def judge(
     if checked is None or not checked.gathered:
         return Status.UNVERIFIED, "converged and stable, but not audited"
     return Status.CONVERGED_STABLE, "converged, audited and stable"
+
+
+def _way_out(scene: Scene, verdict: Stability) -> str:
+    """What to do about an unstable equilibrium."""
+    if verdict.held_index == 0:
+        return (
+            'the droplet would roll or slide off; hold its centroid by droplet.hold = "xy" to see '
+            "this state"
+        )
+    if verdict.beyond_model:
+        return (
+            f'the "{scene.sector.model}" model is symmetric against that; take '
+            f'discretization.model = "{verdict.within}" and disturb the start to leave it'
+        )
+    return "disturb the start to leave it"
 
 
 def _tolerated_depth(scene: Scene) -> float:

@@ -26,6 +26,8 @@ DENSE_LIMIT = 400
 what they load (docs/results/choices.md)."""
 WEIGHT = 10.0
 """Stiffness of the constraints of a dense matrix over its largest diagonal entry."""
+LOST = 1e-8
+"""Relative defect of a solve from which the matrix counts as singular."""
 REFINEMENTS = 4
 """Solves at most with one factorization; the second is usually the last."""
 
@@ -99,6 +101,7 @@ class Matrix:
         self.size = size
         self.pattern = pattern
         self.data = np.zeros(size * size if pattern is None else len(pattern.entries))
+        self._sparse: Any = None
         self.full = np.zeros((size, 0 if pattern is None else size - pattern.size))
 
     def add(self, unknowns: Index, blocks: Array) -> None:
@@ -136,7 +139,10 @@ class Matrix:
 
         pattern = self.pattern
         assert pattern is not None
-        return csc_array((self.data, pattern.rows, pattern.starts), (pattern.size, pattern.size))
+        if self._sparse is None or self._sparse.data is not self.data:
+            shape = (pattern.size, pattern.size)
+            self._sparse = csc_array((self.data, pattern.rows, pattern.starts), shape)
+        return self._sparse
 
     def __matmul__(self, vector: Array) -> Array:
         if self.pattern is None:
@@ -144,6 +150,37 @@ class Matrix:
         first = self.pattern.size
         near = self.sparse() @ vector[:first]
         return np.append(near, self.full[:first].T @ vector[:first]) + self.full @ vector[first:]
+
+
+class Contributions(Matrix):
+    """Element blocks by rows of a motion, kept to be summed by the unknowns of several.
+
+    Attributes
+    ----------
+    kept : arrays (elements, local) of rows, each with its blocks (elements, local, local).
+    """
+
+    def __init__(self, size: int) -> None:
+        super().__init__(0)
+        self._rows = size
+        self.kept: list[tuple[Index, Array]] = []
+
+    def add(self, unknowns: Index, blocks: Array) -> None:
+        self.kept.append((unknowns, blocks))
+
+    def add_at(self, places: Index, values: Array) -> None:
+        """Add values at places of a full matrix of rows."""
+        pairs = np.stack(np.divmod(places, self._rows), axis=1)
+        self.kept.append((pairs, values[:, None, None] * np.eye(2, k=1)))
+
+    def summed(self, into: Matrix, factors: Array, unknowns: Index) -> Matrix:
+        """Add all blocks to a matrix, for motions in which each row takes ``factors`` of its
+        ``unknowns`` (images, rows)."""
+        for rows, blocks in self.kept:
+            for factor, unknown in zip(factors, unknowns, strict=True):
+                part = factor[rows]
+                into.add(unknown[rows], blocks * part[:, :, None] * part[:, None, :])
+        return into
 
 
 class Bordered:
@@ -166,8 +203,11 @@ class Bordered:
         self._inner = self._dense() if matrix.pattern is None else self._sparse(matrix.pattern)
         self._reduce()
 
-    def solve(self, top: Array, bottom: Array) -> tuple[Array, Array]:
-        """``K s + B q = top``, ``B^T s = bottom``, with iterative refinement."""
+    def solve(
+        self, top: Array, bottom: Array, accuracy: float = 1e-13, lost: float = LOST
+    ) -> tuple[Array, Array]:
+        """``K s + B q = top``, ``B^T s = bottom``, refined down to a relative defect of
+        ``accuracy``; one above ``lost`` is refused."""
         s, q = np.zeros(self._n), np.zeros(self._m)
         r_top, r_bottom = top, bottom
         size = np.linalg.norm(np.append(top, bottom))
@@ -176,9 +216,9 @@ class Bordered:
             s, q = s + ds, q + dq
             r_top, r_bottom = self._defect(s, q, top, bottom)
             miss = np.linalg.norm(np.append(r_top, r_bottom))
-            if miss <= 1e-13 * size:
+            if miss <= accuracy * size:
                 break
-        if not miss <= 1e-8 * size:
+        if not miss <= lost * size:
             raise SingularMatrix(f"the linear solve leaves a relative defect of {miss / size:.1e}")
         return s, q
 

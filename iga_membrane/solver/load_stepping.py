@@ -277,9 +277,9 @@ def _give_up(
     if earlier.status is Status.INTERRUPTED:
         path.result.status, path.result.message = earlier.status, earlier.message
         return
-    softer = _verdict(assembly, earlier) if earlier.status is None else None
+    softer = _verdict(path.scene, assembly, earlier) if earlier.status is None else None
     assembly.load(path.scene)
-    verdict = _verdict(assembly, path.result)
+    verdict = _verdict(path.scene, assembly, path.result)
     left = verdict.smallest if verdict else 0.0
     fall = (softer.smallest if softer else 0.0) ** 2 - left**2
     ahead = left**2 * (path.last_good - back) / fall if fall > 0 else np.inf
@@ -316,10 +316,10 @@ def _bounded(path: LoadPath, ramp: Ramp, index: int) -> None:
     )
 
 
-def _verdict(assembly: Assembly, state: NewtonResult) -> Stability | None:
+def _verdict(scene: Scene, assembly: Assembly, state: NewtonResult) -> Stability | None:
     """Stability of a state of the load taken last."""
     try:
-        return stability_of(assembly, state.surface, state.multipliers)
+        return stability_of(scene, assembly, state.surface, state.multipliers, "model")
     except (SingularMatrix, np.linalg.LinAlgError):
         return None
 
@@ -333,9 +333,8 @@ def _beyond_fold(
     descent is started that way at growing distances.
     """
     plain = replace(options, near=np.inf)
-    motion = assembly.motion(state.surface)
-    along = motion.displacement(verdict.mode)
-    along /= np.linalg.norm(along, axis=1).max()
+    along = verdict.mode
+    along = along / np.linalg.norm(along, axis=1).max()
     for distance in np.geomspace(0.01, 0.3, 6):
         for sign in (1.0, -1.0):
             start = state.surface.moved(state.surface.points + sign * distance * along)

@@ -37,6 +37,8 @@ class SolverOptions:
     follow_instability : whether to go on from an unstable equilibrium, along its softest mode, to
         the next one below (:mod:`.saddle`), within the symmetry of the model. The way is not the
         droplet's own: of several stable states it may find another than the liquid would.
+    stability : "full", the verdict is that of the whole body whatever part of it is computed; or
+        "model", it is that within the symmetry of the computed part.
     start : a state file to start from, or to go on from where a path of loads was interrupted.
     checkpoint : a state file to be written after every converged load step. Its folder is checked
         before any work; a disk that fills up later is a warning, and the step before stays.
@@ -50,6 +52,7 @@ class SolverOptions:
     max_memory_gb: float = 8.0
     audit: bool = True
     follow_instability: bool = False
+    stability: str = "full"
     start: str | Path | None = None
     checkpoint: str | Path | None = None
 

@@ -30,7 +30,7 @@ def result(solution: Solution) -> dict[str, Any]:
         "success": solution.success,
         "message": solution.message,
         "warnings": list(solution.warnings),
-        "stability_scope": solution.scene.sector.model,
+        "stability_scope": solution.stability_scope,
         "index": solution.index,
         "lambda_min": solution.lambda_min,
         "bracket": vars(solution.bracket) if solution.bracket else None,

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..splines import EdgeTable, Table
 from ..surface.motion import Spines
-from .linear import DENSE_LIMIT, Matrix, SparsePattern
+from .linear import DENSE_LIMIT, Contributions, Matrix, SparsePattern
 from .pair_sums import PairSums
 
 
@@ -125,6 +125,26 @@ class Rows:
         own = self.size - len(self.spines.shifts)
         unknowns = [self.unknowns(functions) for functions in groups]
         return SparsePattern(own, unknowns, self.spines.places[:own])
+
+
+class Released(Rows):
+    """Rows of a motion, each an unknown; what elements contribute to a Hessian is kept.
+
+    Parameters
+    ----------
+    rows : with the tables.
+    """
+
+    def __init__(self, rows: Rows) -> None:
+        self.spines, self.table, self.groups = rows.spines.released(), rows.table, rows.groups
+        self.size = self.spines.size
+
+    def matrix(self, tied: Index | None = None) -> Contributions:
+        return Contributions(self.size)
+
+    @cached_property
+    def pair_sums(self) -> PairSums:
+        return PairSums(self.spines, self.table.functions, None)
 
 
 class FirstOrder:

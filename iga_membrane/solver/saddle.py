@@ -74,6 +74,12 @@ def followed(
     here, result, tried = saddle, outcome.result, [saddle]
     message = saddle.message
     for _ in range(FALLS):
+        if here.mode_within != assembly.spines.model:
+            message = (
+                f"{message}; not followed down, the \"{assembly.spines.model}\" model cannot take "
+                f'that motion: take discretization.model = "{here.mode_within}"'
+            )
+            break
         ends = []
         for start in _pushes(here, result, assembly, settings.step_limit):
             grading = outcome.scene.meridian_grading

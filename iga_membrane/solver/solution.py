@@ -65,6 +65,9 @@ class Solution:
         from that file goes on there.
     unknowns : their number.
     warnings : what the user should know.
+    stability_scope : "full" where the stability of the whole body was judged, else the model within
+        whose symmetry it was.
+    mode_within : the smallest model whose motions include the mode's kind.
     kind : of a status that has several, as TOPOLOGY_CHANGE.
     """
 
@@ -91,6 +94,8 @@ class Solution:
     volume_error: float | None = None
     progress: Progress | None = field(default=None, repr=False)
     mode: Array | None = field(default=None, repr=False)
+    stability_scope: str = "full"
+    mode_within: str | None = None
 
     @property
     def success(self) -> bool:
@@ -196,7 +201,7 @@ class Solution:
         if self.lambda_min is not None:
             lines.append(
                 f"  {'stability':<24} index {self.index}, smallest eigenvalue "
-                f"{self.lambda_min:.4g} ({self.scene.sector.model} model)"
+                f"{self.lambda_min:.4g} (of the {self.stability_scope} body)"
             )
         checks = self.audit.checks() if self.audit else ()
         lines.append(f"  {'audit':<24} {', '.join(map(str, checks)) or 'n/a'}")

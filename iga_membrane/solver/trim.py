@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,6 +82,13 @@ class Trim:
         self._known: list[tuple[Array, Outside]] = []
         self._cores = np.zeros(0, int), np.zeros((0, 3)), np.zeros(0)
         self.begin()
+
+    def released(self) -> Trim:
+        """The same without idle unknowns, for sums in which every row has its own."""
+        free = copy(self)
+        free.ties = copy(self.ties)
+        free.ties.idle = np.zeros(0, int)
+        return free
 
     def forget(self) -> None:
         """Cut anew: the solid may have changed."""

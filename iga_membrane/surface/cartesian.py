@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..splines import net_of
-from .motion import Motion, Spines, _points_of_field, along_net
+from .motion import Block, Motion, Spines, _points_of_field, along_net
 from .supports import Sector, Sliding, Support
 from .surface import Surface
 
@@ -57,6 +57,15 @@ class Cartesian(Spines):
         self.spare = 3 * count
         self.second = np.full(count, self.spare)
         self.extra = [count + np.arange(count), 2 * count + np.arange(count)]
+
+    @property
+    def whole(self) -> bool:
+        return self.model == "full"
+
+    @property
+    def blocks(self) -> list[Block]:
+        """Those of the model alone."""
+        return super().blocks[:1]
 
     def _scalar(self, net: Array) -> Array:
         """Control points' values of a number given on the net; 0 at a pole."""

@@ -8,11 +8,11 @@ same table: points that share an unknown, points without one, directions in a pl
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arguments import checked
 from ..arrays import Array, Index
@@ -20,7 +20,8 @@ from ..checks import array, integer, ndarray
 from ..errors import GeometryError
 from ..splines import Space, net_of
 from ..splines.space import EDGES
-from .sector import check_symmetric, sector_images
+from .parity import ODD, Parity, parts
+from .sector import FOLDS, check_symmetric, sector_images
 from .supports import Fixed, Joint, Mirror, Sector, Shift, Sliding, Support, Symmetry
 from .surface import Surface
 
@@ -65,6 +66,31 @@ class Motion:
         return np.asarray(total)
 
 
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Motions of one parity, by their own unknowns.
+
+    Attributes
+    ----------
+    parity : theirs.
+    factors : (images, rows) part that each row of the motion takes in its unknown, on each of the
+        parity's images of the computed part.
+    unknowns : (images, rows) its unknown, -1 where there is none; size : their number.
+    gaps : (images, rows) number of the gap constraint of a second row, else -1.
+    """
+
+    parity: Parity
+    factors: Array
+    unknowns: Index
+    size: int
+    gaps: Index
+
+    @property
+    def own(self) -> bool:
+        """Whether they are those of the computed model itself."""
+        return -1 not in self.parity.signs
+
+
 class Spines:
     """The spine motion of a surface: a fixed numbering of unknowns, directions on demand.
 
@@ -81,6 +107,7 @@ class Spines:
 
     Attributes
     ----------
+    model : what part of the patch is computed.
     points, unknowns, size, shifts, share : as in :class:`Motion`.
     spare : number of a row without an unknown.
     second : (count,) the second row of each control point, or the spare row.
@@ -100,6 +127,7 @@ class Spines:
         self._start = surface.points
         self.space = space
         self._sliding = [s for s in supports if isinstance(s, Sliding)]
+        self.model = next((s.model for s in supports if isinstance(s, Sector)), Sector().model)
         self._mirrors: list[tuple[Index, int]] = []
         self._upright: list[tuple[Index, Index]] = []
         owner: Index = np.arange(space.count)
@@ -127,8 +155,9 @@ class Spines:
             (s, space.edge_functions(s.edge)) for s in self._sliding if s.solid is not None
         ]
         edge = np.concatenate([np.zeros(0, int), *(points for _, points in self._curved)])
-        numbers = _numbered(owner, fixed[owner])
-        seconds = _numbered(owner[edge], np.zeros(len(edge), bool))
+        self._fixed, self._edge = fixed, edge
+        numbers = _ranked(np.where(fixed[owner], -1, owner))
+        seconds = _ranked(owner[edge])
         primary = int(numbers.max(initial=-1)) + 1
         own = primary + int(seconds.max(initial=-1)) + 1
         self.spare = spare = space.count + len(edge)
@@ -199,15 +228,63 @@ class Spines:
         rows = np.concatenate([directions, *normals_of_solids, np.zeros((1, 3))])
         return self._motion(rows)
 
+    @property
+    def whole(self) -> bool:
+        """Whether the blocks are all motions of the whole patch."""
+        return True
+
+    @property
+    def blocks(self) -> list[Block]:
+        """Motions of the whole patch by their parity, these unknowns' own first."""
+        ones = np.ones((1, len(self.points)))
+        own = Parity(self.model, (1,) * len(FOLDS[self.model]), within=self.model)
+        first = Block(own, ones, self.unknowns[None], self.size, self.held[None])
+        return [first, *(self._block(parity) for parity in ODD[self.model])]
+
+    def _block(self, parity: Parity) -> Block:
+        """Motions of a parity that the model's own do not have. Of its own mirror group they take
+        its unknowns, those that rest with factor 0, so that matrices keep their sparsity. Nothing
+        is shifted as a whole: spines that may follow a shift only so far are no limit to small
+        motions."""
+        leaders, factors = parts(self.space, parity, self.model)
+        for first, second in self._seams + 2 * self._upright:
+            leaders[:, second], factors[:, second] = leaders[:, first], factors[:, first]
+        none = np.zeros((len(leaders), 1 + len(self.shifts)))
+        factors = np.concatenate([factors, factors[:, self._edge], none], axis=1)
+        if parity.model == self.model:
+            return Block(parity, factors, self.unknowns[None], self.size, self.held[None])
+        seconds = _ranked(leaders[:, self._edge])
+        firsts = _ranked(np.where(self._fixed, -1, leaders))
+        primary, gaps = int(firsts.max(initial=-1)) + 1, int(seconds.max(initial=-1)) + 1
+        none = np.full(none.shape, -1)
+        held = np.concatenate([np.full_like(firsts, -1), seconds, none], axis=1)
+        moved = np.where(seconds >= 0, primary + seconds, -1)
+        unknowns = np.concatenate([firsts, moved, none], axis=1)
+        return Block(parity, factors, unknowns, primary + gaps, held)
+
+    def released(self) -> Spines:
+        """The same directions with an unknown for every row."""
+        free = copy(self)
+        free.size = len(self.points)
+        free.unknowns = np.arange(free.size)
+        free.held = np.where(self.held >= 0, free.unknowns - self.space.count, -1)
+        for name in ("gauge", "places"):
+            free.__dict__.pop(name, None)
+        return free
+
     def _motion(self, rows: Array) -> Motion:
         return Motion(self.points, rows, self.unknowns, self.size, self.shifts, self.share)
 
     @cached_property
     def places(self) -> Array:
         """(n, 3) where the first control point of each unknown starts; 0 for shifts."""
-        places = np.zeros((self.size + 1, 3))
+        return self.places_of(self.unknowns, self.size)
+
+    def places_of(self, unknowns: Index, size: int) -> Array:
+        """(size, 3) the same for other unknowns (rows,)."""
+        places = np.zeros((size + 1, 3))
         own = len(self.points) - len(self.shifts)
-        places[self.unknowns[:own][::-1]] = self._start[self.points[:own][::-1]]
+        places[unknowns[:own][::-1]] = self._start[self.points[:own][::-1]]
         return places[:-1]
 
     def lag(self, surface: Surface) -> Array:
@@ -320,11 +397,10 @@ def _conormals(surface: Surface, support: Sliding) -> Array:
     return np.asarray(outward / np.linalg.norm(outward, axis=1, keepdims=True))
 
 
-def _numbered(owner: Index, fixed: NDArray[np.bool_]) -> Index:
-    """Consecutive numbers of the owners, -1 where fixed."""
-    leaders = np.unique(owner[~fixed])
-    numbers = np.searchsorted(leaders, owner)
-    return np.where(fixed, -1, numbers)
+def _ranked(leaders: Index) -> Index:
+    """Consecutive numbers of leaders, -1 where there is none."""
+    kept = np.unique(leaders[leaders >= 0])
+    return np.where(leaders >= 0, np.searchsorted(kept, leaders), -1)
 
 
 def along_net(one: Array, two: Array, net: Array) -> Array:

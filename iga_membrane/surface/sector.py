@@ -14,11 +14,16 @@ import numpy as np
 from ..arrays import Array, Index
 from ..errors import GeometryError, SceneError
 from ..splines import Space, Table
-from .supports import Sector
+from .supports import Model, Sector
 from .surface import Surface
 
 # Mirror planes as fractions of the ring: xi1 -> fold * turn - xi1.
-FOLDS = {"full": (), "half": (0.0,), "quarter": (0.0, 0.5), "eighth": (0.0, 0.5, 0.25)}
+FOLDS: dict[Model, tuple[float, ...]] = {
+    "full": (),
+    "half": (0.0,),
+    "quarter": (0.0, 0.5),
+    "eighth": (0.0, 0.5, 0.25),
+}
 
 
 def sector_table(space: Space, sector: Sector, points: tuple[int, int]) -> Table:
@@ -56,7 +61,7 @@ def mirrors(sector: Sector) -> list[Array]:
     """Matrices (3, 3) that carry one sector to each of its images, itself first."""
     images: list[Array] = [np.eye(3)]
     for fold in FOLDS[sector.model]:
-        images += [m @ _mirror(fold) for m in images]
+        images += [m @ reflection(fold) for m in images]
     return images
 
 
@@ -73,10 +78,20 @@ def in_sector(space: Space, sector: Sector, places: Array, rounding: float) -> A
     return inside
 
 
-def _mirror(fold: float) -> Array:
+def reflection(fold: float) -> Array:
+    """(3, 3) reflection by the vertical plane at half of a fraction of the turn."""
     turn = 2.0 * np.pi * fold
     cosine, sine = np.cos(turn), np.sin(turn)
     return np.array([[cosine, sine, 0.0], [sine, -cosine, 0.0], [0.0, 0.0, 1.0]])
+
+
+def sense(surface: Surface) -> int:
+    """1 where a ring patch turns from x to y, -1 where it turns from y to x; 1 of other patches."""
+    if not surface.space.bases[0].periodic:
+        return 1
+    rim = surface.net[:, 0, :2]
+    ahead = np.roll(rim, -1, axis=0)
+    return -1 if float((rim[:, 0] * ahead[:, 1] - rim[:, 1] * ahead[:, 0]).sum()) < 0 else 1
 
 
 def check_symmetric(surface: Surface, sector: Sector) -> None:
@@ -87,15 +102,10 @@ def check_symmetric(surface: Surface, sector: Sector) -> None:
     SceneError
         With the largest distance of a control point from the mirror image it should be.
     """
-    net = surface.net
-    rim, next_rim = net[:, 0, :2], np.roll(net[:, 0, :2], -1, axis=0)
-    clockwise = (
-        surface.space.bases[0].periodic
-        and float((rim[:, 0] * next_rim[:, 1] - rim[:, 1] * next_rim[:, 0]).sum()) < 0
-    )
+    net, turn = surface.net, sense(surface)
     for fold in FOLDS[sector.model]:
-        mirror = _mirror(-fold if clockwise else fold)
-        off = float(np.abs(_image(surface.space, net, fold) - net @ mirror).max())
+        image = net @ reflection(turn * fold)
+        off = float(np.abs(net_image(surface.space, net, fold) - image).max())
         if off > 1e-8 * surface.size:
             raise SceneError(
                 f'start: not symmetric as the "{sector.model}" model needs (off by {off:g}); '
@@ -103,7 +113,7 @@ def check_symmetric(surface: Surface, sector: Sector) -> None:
             )
 
 
-def _image(space: Space, net: Any, fold: float) -> Any:
+def net_image(space: Space, net: Any, fold: float) -> Any:
     """The entries of a net (n1, n2, ...) at the mirror images of its places."""
     ring = space.bases[0]
     if not ring.periodic:
@@ -139,7 +149,7 @@ def sector_images(space: Space, sector: Sector) -> Index:
     first = np.arange(n1 * n2) if space.leaders is None else space.leaders
     owner = np.arange(len(first))
     for fold in list(FOLDS[sector.model]) * sector.copies:
-        image = _image(space, numbers.reshape(n1, n2), fold).ravel()[first]
+        image = net_image(space, numbers.reshape(n1, n2), fold).ravel()[first]
         least = np.minimum(owner, owner[image])
         owner[image] = np.minimum(owner[image], least)
         owner = np.minimum(owner, least)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from ..arguments import checked
 from ..checks import NOT_NEGATIVE, items, number, words
-from ..solids.sphere import Sphere
+from ..solids import Plane, Solid, Sphere
 from ..splines import EDGE
 
 
@@ -47,6 +47,11 @@ class Sliding:
     edge: str = "xi2=0"
     solid: Sphere | None = None
     reach: float = float("inf")
+
+    @property
+    def on(self) -> Solid:
+        """The solid, be it the plane."""
+        return self.solid or Plane(90.0)
 
 
 @dataclass(frozen=True)
@@ -90,6 +95,10 @@ class Joint:
     edges: tuple[str, str] = ("xi1=0", "xi1=1")
 
 
+Model = Literal["full", "half", "quarter", "eighth"]
+"""How much of a patch is computed."""
+
+
 @dataclass(frozen=True)
 @checked()
 class Sector:
@@ -103,7 +112,7 @@ class Sector:
     model : "full", "half", "quarter" or "eighth".
     """
 
-    model: Literal["full", "half", "quarter", "eighth"] = "full"
+    model: Model = "full"
 
     @property
     def copies(self) -> int:

@@ -67,6 +67,10 @@ class Contact(Term):
     traction: float = 0.0
     name = "contact"
 
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        return (self.solid,)
+
     def scaled(self, scale: Scale) -> Contact:
         unit = scale.length**2 / scale.tension
         eps = None if self.penalty is None else self.penalty * unit

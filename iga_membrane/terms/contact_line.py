@@ -12,6 +12,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import choice, contact_angle
+from ..solids import Plane, Solid
 from ..splines import EdgeTable, line
 from .term import LINE_EDGES, BodyDensity, LineTerm, Scale
 
@@ -48,6 +49,10 @@ class PlaneContactLine(LineTerm):
     def strength(self) -> float:
         """Energy per wetted area."""
         return float(-self.gamma * (np.cos(np.radians(self.contact_angle)) + self.covered))
+
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        return (Plane(self.contact_angle),)
 
     def scaled(self, scale: Scale) -> PlaneContactLine:
         return replace(self, gamma=self.gamma / scale.tension)

@@ -90,6 +90,10 @@ class LocalGap(Term):
         """That of the law."""
         return self.term.name
 
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        return (LocalSolid(self.term.solid, self.scale),)
+
     def scaled(self, scale: Scale) -> LocalGap:
         return LocalGap(self.term, scale)
 

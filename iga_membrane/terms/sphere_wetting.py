@@ -23,7 +23,7 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import choice, direction
 from ..errors import GeometryError
-from ..solids.sphere import Sphere
+from ..solids import Solid, Sphere
 from ..splines import EdgeTable, line
 from ..splines.space import EDGES
 from .term import BodyDensity, LineTerm, Scale
@@ -67,6 +67,10 @@ class SphereContactLine(LineTerm):
     def turn(self) -> float:
         """1 where the edge runs counterclockwise about the axis, -1 at the membrane's other end."""
         return -1.0 if EDGES.get(self.edge, (0, 0))[1] else 1.0
+
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        return (self.sphere,)
 
     def scaled(self, scale: Scale) -> SphereContactLine:
         sphere = scale.local_sphere(self.sphere)

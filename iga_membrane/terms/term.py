@@ -222,6 +222,12 @@ class Term(ABC):
 
     name: str
 
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        """Bodies from which it is measured: a rigid motion that carries them into themselves leaves
+        its energy alone."""
+        return ()
+
     @abstractmethod
     def scaled(self, scale: Scale) -> Term:
         """The same term in the units of a scale."""

@@ -61,6 +61,10 @@ class TrimmedContactLine(Term):
         if isinstance(self.solid, (SphereLattice, Spheres)) and self.solid.base is not None:
             object.__setattr__(self, "solid", replace(self.solid, base=None))
 
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        return (self.solid,)
+
     def scaled(self, scale: Scale) -> TrimmedContactLine:
         toward = None if self.toward is None else self.toward @ scale.axes
         return TrimmedContactLine(self.gamma / scale.tension, scale.local_solid(self.solid), toward)

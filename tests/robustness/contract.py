@@ -32,6 +32,22 @@ def check_contract(solution):
     assert solution.load_steps
 
 
+def critical_film():
+    """A flat film under liquid at the very weight that it ceases to carry: the eigenvalue falls by
+    that of density times gravity."""
+
+    def film(density):
+        return iga.liquid_sheet(
+            size=2.0, boundary="circle", volume=0.0, gravity=1.0, liquid_weight=True,
+            liquid=iga.Liquid(1.0, density), discretization=iga.Discretization(elements=6),
+        )  # fmt: skip
+
+    density = 1.0
+    for _ in range(2):  # eigenvalues are good to 1e-6 of themselves
+        density += iga.solve(film(density), on_fail="return").lambda_min
+    return film(density)
+
+
 def unheld_droplet():
     """A droplet on a plane whose centroid nothing holds: it is free to slide."""
     scene = droplet(120, model="full", elements=8)

@@ -133,9 +133,8 @@ def test_an_energy_that_is_not_finite_is_no_obstacle(monkeypatch, when):
 def test_a_rigid_motion_that_nothing_holds_takes_no_long_step():
     """N3: a drop on a plane without a held centroid is free to slide, and is told to be."""
     free = unheld_droplet()
-    solution = iga.solve(free, on_fail="return")
-    assert solution.status is iga.Status.CONVERGED_MARGINAL
-    assert "free to slide along x, y" in solution.message
+    solution = iga.solve(free)
+    assert any("translation along x, translation along y" in text for text in solution.warnings)
     start = free.local_surface().points
     moved = free.units.to_local(solution.surface.points) - start
     assert np.abs(moved).max() <= 1.0
