@@ -29,6 +29,7 @@ def rough(radius: float = RADIUS, elements: int | None = None, **options: object
         iga.SphereLattice(180.0, radius, 4.0 * radius),
         volume=VOLUME,
         gravity=1.0,
+        hold="xy",
         discretization=iga.Discretization(elements=elements),
         **options,
     )

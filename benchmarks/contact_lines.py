@@ -171,6 +171,7 @@ def droplet(angle: float, elements: int | None = None) -> iga.Solution:
         iga.SphereLattice(angle, RADIUS, SIZE),
         volume=VOLUME,
         gravity=1.0,
+        hold="xy",
         discretization=iga.Discretization(elements=elements),
     )
     return iga.solve(scene, PATIENCE, on_fail="return")

@@ -35,7 +35,9 @@ def drop(mesh: iga.Discretization) -> iga.Scene:
 
 def drop_on_sphere(mesh: iga.Discretization) -> iga.Scene:
     ball = iga.Sphere(120.0, 1.0, (0.0, 0.0, -1.0))
-    return iga.sessile_droplet(ball, volume=VOLUME, gravity=0.5, discretization=mesh)
+    return iga.sessile_droplet(
+        ball, volume=VOLUME, gravity=0.5, hold="xy", discretization=mesh
+    )
 
 
 def sheet(mesh: iga.Discretization) -> iga.Scene:
@@ -45,7 +47,9 @@ def sheet(mesh: iga.Discretization) -> iga.Scene:
 
 def rough_drop(mesh: iga.Discretization) -> iga.Scene:
     asperities = iga.SphereLattice(180.0, radius=0.05, spacing=0.2)
-    return iga.sessile_droplet(asperities, volume=VOLUME, gravity=1.0, discretization=mesh)
+    return iga.sessile_droplet(
+        asperities, volume=VOLUME, gravity=1.0, hold="xy", discretization=mesh
+    )
 
 
 def references() -> dict[str, dict[str, float]]:

@@ -32,6 +32,7 @@ def scene_of(
         substrate,
         volume=VOLUME,
         gravity=1.0,
+        hold="xy",
         contact_line=contact_line,
         discretization=mesh,
     )

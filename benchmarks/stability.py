@@ -179,7 +179,7 @@ def sizes() -> list[str]:
     flat = drop_on_plane(1.0, 180.0)["height"]
     for radius in (0.2, 0.1, 0.05, 0.025):
         solid = iga.SphereLattice(180.0, radius=radius, spacing=4.0 * radius)
-        scene = iga.sessile_droplet(solid, volume=VOLUME, gravity=1.0)
+        scene = iga.sessile_droplet(solid, volume=VOLUME, gravity=1.0, hold="xy")
         found = solved(scene)
         cell = judged(found, None, 0.0)
         change = found.measures["height"] - flat

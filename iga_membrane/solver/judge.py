@@ -169,6 +169,12 @@ def contact_objection(
     return None
 
 
+EQUILIBRIA = frozenset({
+    Status.CONVERGED_STABLE, Status.CONVERGED_SADDLE, Status.CONVERGED_MARGINAL,
+})  # fmt: skip
+"""Ends in which the forces balance."""
+
+
 def leaves_its_asperity(
     scene: Scene, surface: Surface, status: Status, message: str
 ) -> tuple[Status, str, str] | None:
@@ -182,7 +188,7 @@ def leaves_its_asperity(
     if status is Status.LIMIT_POINT:
         said = f"the droplet does not stay on one asperity: {message}"
         return Status.TOPOLOGY_CHANGE, "leaves its asperity", said
-    if status is not Status.CONVERGED_STABLE:
+    if status not in EQUILIBRIA:
         return None
     assert scene.substrate is not None
     solid = scene.units.local_solid(scene.substrate)

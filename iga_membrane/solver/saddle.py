@@ -74,7 +74,7 @@ def followed(
     here, result, tried = saddle, outcome.result, [saddle]
     message = saddle.message
     for _ in range(FALLS):
-        if here.mode_within != assembly.spines.model:
+        if here.mode_beyond_model:
             message = (
                 f"{message}; not followed down, the \"{assembly.spines.model}\" model cannot take "
                 f'that motion: take discretization.model = "{here.mode_within}"'

@@ -103,6 +103,11 @@ class Solution:
         return self.status is Status.CONVERGED_STABLE
 
     @property
+    def mode_beyond_model(self) -> bool:
+        """Whether the computed part of an unstable body cannot take the motion of its mode."""
+        return self.mode is not None and self.mode_within != self.scene.sector.model
+
+    @property
     def last_good_load(self) -> LoadStep | None:
         """The last load step that converged; of a path, with the parameter's value."""
         return next((step for step in reversed(self.load_steps) if step.status is None), None)

@@ -146,7 +146,7 @@ def _either(
         return solve(other(), options, on_fail="return", report=report)
     started = thread_time()
     one = solve(first, options, on_fail="return", report=report)
-    if one.status not in ends:
+    if one.status not in ends or one.mode_beyond_model:
         return one
     log.info("%s: %s; in another discretization", one.status.name, one.message)
     left = max(started + options.max_cpu_s - thread_time(), 1e-3)

@@ -123,7 +123,9 @@ def heavy_on_sphere(angle, radius, bond, length, tension):
     pull = bond * tension / (1000.0 * length**2)
     sphere = iga.Sphere(angle, radius * length, (0.0, 0.0, -radius * length))
     liquid = iga.Liquid(tension, 1000.0)
-    return iga.sessile_droplet(sphere, volume=UNIT * length**3, liquid=liquid, gravity=pull)
+    return iga.sessile_droplet(
+        sphere, volume=UNIT * length**3, liquid=liquid, gravity=pull, hold="xy"
+    )
 
 
 def weight(result, bond, length, tension, **_):
@@ -162,6 +164,7 @@ def lattice(radius, pitch, bond, length, tension, penalty=None):
         volume=UNIT * length**3,
         liquid=iga.Liquid(tension, 1000.0),
         gravity=bond * tension / (1000.0 * length**2),
+        hold="xy",
         penalty=penalty,
     )
 

@@ -45,7 +45,9 @@ def drop():
 def rough():
     lattice = iga.SphereLattice(180.0, 0.25, 0.7)
     mesh = iga.Discretization(elements=40)
-    scene = iga.sessile_droplet(lattice, volume=UNIT_VOLUME, gravity=1.0, discretization=mesh)
+    scene = iga.sessile_droplet(
+        lattice, volume=UNIT_VOLUME, gravity=1.0, hold="xy", discretization=mesh
+    )
     return State(scene)
 
 

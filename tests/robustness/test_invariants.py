@@ -62,7 +62,7 @@ def test_contact_forces_only_push():
     lattice = iga.SphereLattice(180.0, 0.25, 0.7)
     mesh = iga.Discretization(elements=40)
     solution = iga.solve(
-        iga.sessile_droplet(lattice, volume=4.19, gravity=1.0, discretization=mesh)
+        iga.sessile_droplet(lattice, volume=4.19, gravity=1.0, hold="xy", discretization=mesh)
     )
     rows = solution.contact["asperities"]
     assert rows

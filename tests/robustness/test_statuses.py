@@ -112,7 +112,7 @@ AUDITED = {
     "droplet, full model, 32 elements": lambda: droplet(150, 1.0, model="full", elements=32),
     "droplet at 180 degrees": lambda: droplet(180, 1.0),
     "droplet on a sphere": lambda: iga.sessile_droplet(
-        iga.Sphere(120.0, 1.0, (0.0, 0.0, -1.0)), volume=UNIT_VOLUME, gravity=1.0
+        iga.Sphere(120.0, 1.0, (0.0, 0.0, -1.0)), volume=UNIT_VOLUME, gravity=1.0, hold="xy"
     ),
     "sheet": lambda: particle_sheet(90),
     "square sheet": lambda: particle_sheet(90, boundary="square"),
@@ -122,10 +122,10 @@ AUDITED = {
         iga.Sphere(150.0, 0.05, (0.0, 0.0, -0.05)), size=0.2, pressure=2.0
     ),
     "asperities at 180 degrees": lambda: iga.sessile_droplet(
-        iga.SphereLattice(180.0, 0.05, 0.2), volume=UNIT_VOLUME, gravity=1.0
+        iga.SphereLattice(180.0, 0.05, 0.2), volume=UNIT_VOLUME, gravity=1.0, hold="xy"
     ),
     "asperities at 150 degrees": lambda: iga.sessile_droplet(
-        iga.SphereLattice(150.0, 0.05, 0.2), volume=UNIT_VOLUME, gravity=1.0
+        iga.SphereLattice(150.0, 0.05, 0.2), volume=UNIT_VOLUME, gravity=1.0, hold="xy"
     ),
     "particle on a droplet": lambda: iga.sessile_droplet(
         iga.Plane(150.0),

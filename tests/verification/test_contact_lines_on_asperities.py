@@ -88,7 +88,7 @@ def papers_droplet(angle, elements=None, **lattice):
     asperities = iga.SphereLattice(angle, RADIUS, 0.2, **lattice)
     mesh = iga.Discretization(elements=elements)
     return iga.sessile_droplet(
-        asperities, volume=4.0 * np.pi / 3.0, gravity=1.0, discretization=mesh
+        asperities, volume=4.0 * np.pi / 3.0, gravity=1.0, hold="xy", discretization=mesh
     )
 
 

@@ -19,6 +19,7 @@ def scene_of(spacing, elements=None, share=0.25, angle=180.0, contact_line="auto
         iga.SphereLattice(angle, share * spacing, spacing),
         volume=UNIT_VOLUME,
         gravity=1.0,
+        hold="xy",
         contact_line=contact_line,
         discretization=iga.Discretization(elements=elements),
     )
@@ -101,7 +102,7 @@ def test_each_asperity_may_have_its_own_contact_angle():
 
     def height(one, other):
         spheres = iga.Spheres(np.where(odd, one, other), centers, np.full(len(place), 0.02))
-        scene = iga.sessile_droplet(spheres, volume=UNIT_VOLUME, gravity=1.0)
+        scene = iga.sessile_droplet(spheres, volume=UNIT_VOLUME, gravity=1.0, hold="xy")
         assert scene.sector.model == "eighth"
         return iga.solve(scene).measures["height"]
 
