@@ -278,8 +278,7 @@ def softest_motion(scene, solution):
     assembly = Assembly(scene)
     surface = solution.surface.moved(scene.units.to_local(solution.surface.points))
     multipliers = np.array([solution.multipliers[term.name] for term in assembly.constraints])
-    verdict = stability_of(assembly, surface, multipliers)
-    moved = surface.moved(assembly.motion(surface).displacement(verdict.mode))
+    moved = surface.moved(stability_of(scene, assembly, surface, multipliers).mode)
     at, way = surface.grid(9, 41, 1), moved.grid(9, 41, 1).position
     return at.position[..., 2], np.einsum("...i,...i->...", way, at.normal)
 
