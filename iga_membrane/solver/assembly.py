@@ -106,16 +106,18 @@ class Assembly(Functional):
         if self.trim is None:
             return surface
         self.trim.hold(surface.points)
-        return surface.moved(self._extended(surface.points, motion))
+        return surface.moved(self.extended(surface.points, motion))
 
     def displacement(self, motion: Motion, step: Array) -> Array:
         """(count, 3) of the control points; those that nothing outside a solid depends on follow
         the others."""
-        moved = motion.displacement(step)
-        return moved if self.trim is None else self._extended(moved, motion)
+        return self.extended(motion.displacement(step), motion)
 
-    def _extended(self, vectors: Array, motion: Motion) -> Array:
-        assert self.trim is not None
+    def extended(self, vectors: Array, motion: Motion) -> Array:
+        """Positions or displacements (count, 3) of the control points, those on which nothing
+        depends changed along a motion's directions until they follow the others."""
+        if self.trim is None:
+            return vectors
         return self.trim.ties.extended(vectors, motion.directions[: len(vectors)])
 
     @property

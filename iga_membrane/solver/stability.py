@@ -108,7 +108,7 @@ def stability_of(
         index,
         verdicts[worst].smallest,
         verdicts[worst].error,
-        assembly.displacement(state.motion_of(block), verdicts[worst].mode),
+        assembly.extended(state.motion_of(block).displacement(verdicts[worst].mode), state.motion),
         "full" if scope == "full" and assembly.spines.whole else assembly.spines.model,
         assembly.spines.model,
         block.parity.within,

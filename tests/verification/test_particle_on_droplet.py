@@ -159,8 +159,7 @@ def test_particle_on_top_carries_what_a_line_can_and_then_lets_go():
 def test_droplet_slips_from_under_a_particle_that_presses_on_its_top():
     """L10: the symmetric state is an equilibrium that sliding leaves; held it is stable."""
     slips = iga.solve(on_top(1.3, line="conforming"), on_fail="return")
-    assert slips.scene.sector.model == "half"
-    assert (slips.status, slips.index) == (iga.Status.CONVERGED_SADDLE, 1)
+    assert (slips.status, slips.index) == (iga.Status.CONVERGED_SADDLE, 2)
     assert slips.lambda_min < 0
     held = iga.solve(on_top(1.3, hold="xy", line="conforming"))
     assert held.scene.sector.model == "eighth"
