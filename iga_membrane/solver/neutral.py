@@ -10,7 +10,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..scenes.scene import Scene
-from ..splines.space import EDGES
 from ..surface.motion import Block
 from ..surface.sector import mirrors
 from ..surface.supports import Joint, Sliding
@@ -125,18 +124,15 @@ def _simplest(motions: Array) -> Array:
 def _rims(scene: Scene) -> list[str]:
     """Edges that keep their place: fixed ones, but a contact line at 180 degrees, at which the
     membrane lies; and free ones, which end on a wall."""
-    space = scene.surface.space
-    if space.shared is not None:
-        return []
-    edges = [e for e in EDGES if not (space.bases[0].periodic and e.startswith("xi1"))]
-    closed = ["xi2=1"] if space.pole is not None else []
+    closed: list[str] = []
     for support in scene.supports:
         if isinstance(support, Sliding):
             closed.append(support.edge)
         elif isinstance(support, Joint):
             closed += support.edges
     lines = [t for t in scene.terms if isinstance(t, LineTerm) and t.strength >= t.gamma]
-    return [e for e in edges if e not in closed and e not in [t.edge for t in lines]]
+    closed += [line.edge for line in lines]
+    return [edge for edge in scene.surface.space.open_edges if edge not in closed]
 
 
 def _across(surface: Surface, edge: str) -> Array:
