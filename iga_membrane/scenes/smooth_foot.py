@@ -39,7 +39,7 @@ def on_a_line(parts: Question) -> Foot:
     foot = rest_of(substrate, parts.liquid, scale, parts.down)
     bond = abs(float(parts.bond[2]))
     grading = _grading(substrate.contact_angle, bond, foot.pancake.length)
-    if parts.held and isinstance(substrate, Sphere):
+    if "z" in parts.held and isinstance(substrate, Sphere):
         # pulled at, the membrane bends over the sphere's radius, and turns away from it slowly
         slow = min(1.0, float(np.sin(np.radians(min(substrate.contact_angle, 90.0)))) / WEDGE)
         first = NECK * substrate.radius / scale.length * slow
