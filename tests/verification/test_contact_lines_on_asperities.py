@@ -133,7 +133,8 @@ def test_an_angle_for_each_sphere():
     angles = [140.0] * 4 + [150.0] * 8
     substrate = iga.Spheres(angles, centers, 0.1)
     solution = iga.solve(
-        iga.sessile_droplet(substrate, volume=4.0 * np.pi / 3.0, gravity=1.0), on_fail="return"
+        iga.sessile_droplet(substrate, volume=4.0 * np.pi / 3.0, gravity=1.0, hold="xy"),
+        on_fail="return",
     )
     assert solution.success, solution.message
     assert solution.contact["support_force"] == pytest.approx(4.0 * np.pi / 3.0, rel=5e-4)
