@@ -1,7 +1,8 @@
-"""A droplet that touches nothing but two particles: a bridge between their contact lines.
+"""A droplet that bridges two solids, particles or a plane and a particle: its membrane lies between
+their contact lines.
 
-Its frame has its origin in the first particle and the axis z towards the second. It starts from the
-barrel ``r = linear + bulge (1 - s^2)`` between circles round the axis that has the least energy.
+Its frame has the axis z from the first solid to the second and its origin where the first one meets
+it. It starts from the toroid of least energy.
 """
 
 from __future__ import annotations
@@ -13,42 +14,72 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import SceneError
-from ..solids import Plane, Sphere
-from ..splines.quadrature import gauss
+from ..solids import Plane, Solid, Sphere
 from ..surface.ring import axisymmetric, ring_space
 from ..surface.supports import Sector, Sliding
-from ..terms import SphereContactLine
-from .question import Foot, Question, sector_of
+from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from .question import BALL, Foot, Question, sector_of
+from .toroid import End, least_energy_toroid
 
 CLOSE = 0.5
-"""Gap between two particles over a droplet's length across which its bridge is easily solved."""
-WIDEST = 175.0
-"""Polar angle, degrees, of the start's circles at most."""
+"""Gap between two solids over a droplet's length across which it bridges them easily: a wider one
+is approached from there where its own start fails."""
+SMALL = 0.15
+"""Radius of a particle on a plane's droplet, over the droplet's length, below which elements must
+crowd round it: from there on the force differs by 1e-6 between 20 and 40 elements here."""
+CENTERED = 1e-9
+"""Distance of a particle from a plane's axis, over its radius, that is none."""
+
+Ends = tuple[Plane | Sphere, Sphere]
+"""The solids that a bridge joins."""
 
 
-def axes_between(particles: Sequence[Sphere]) -> Array:
-    """(3, 3) columns are axes of which z points from the first particle to the second."""
-    way = np.subtract(particles[1].center, particles[0].center)
+def ends_of(
+    substrate: Solid | None, particles: Sequence[Sphere], contact_line: str, length: float
+) -> Ends | None:
+    """The solids that a droplet of a length bridges: two particles, or a plane and a particle on
+    its axis that is not small and on which the membrane may end; else None."""
+    if substrate is None and len(particles) == 2:
+        return particles[0], particles[1]
+    if not isinstance(substrate, Plane) or len(particles) != 1:
+        return None
+    (particle,) = particles
+    conforming = contact_line == "conforming" or (
+        contact_line == "auto" and particle.motion == "fixed"
+    )
+    x, y, _ = np.subtract(particle.center, substrate.point) @ substrate.axes()
+    centered = float(np.hypot(x, y)) <= CENTERED * particle.radius
+    large = particle.radius >= SMALL * length and substrate.contact_angle < 180.0
+    return (substrate, particle) if centered and conforming and large else None
+
+
+def frame_of(ends: Ends) -> tuple[tuple[float, float, float], Array]:
+    """Origin and axes of a bridge."""
+    first, second = ends
+    if isinstance(first, Plane):
+        return first.point, first.axes()
+    way = np.subtract(second.center, first.center)
     x, y, z = (float(c) for c in way / np.linalg.norm(way))
-    return Plane(90.0, normal=(x, y, z)).axes()
+    axes = Plane(90.0, normal=(x, y, z)).axes()
+    x, y, z = (float(c) for c in np.array(first.center) + first.radius * axes[:, 2])
+    return (x, y, z), axes
 
 
-def moved_apart(particles: Sequence[Sphere], displacement: float) -> Sphere:
-    """The second particle, farther from the first by a displacement."""
-    x, y, z = np.array(particles[1].center) + displacement * axes_between(particles)[:, 2]
-    return replace(particles[1], center=(float(x), float(y), float(z)))
+def gap_between(ends: Ends) -> float:
+    """Shortest distance between two solids."""
+    origin, axes = frame_of(ends)
+    return float(np.subtract(ends[1].center, origin) @ axes[:, 2]) - ends[1].radius
 
 
-def room_between(particles: Sequence[Sphere], length: float) -> float:
-    """How much farther apart two particles are than where a droplet of a length bridges them
-    easily."""
-    one, two = particles
-    away = float(np.linalg.norm(np.subtract(two.center, one.center)))
-    return max(0.0, away - one.radius - two.radius - CLOSE * length)
+def at_gap(ends: Ends, gap: float) -> Sphere:
+    """The second solid, at another distance from the first."""
+    origin, axes = frame_of(ends)
+    x, y, z = np.array(origin) + (gap + ends[1].radius) * axes[:, 2]
+    return replace(ends[1], center=(float(x), float(y), float(z)))
 
 
-def bridge(parts: Question, particles: Sequence[Sphere]) -> Foot:
-    """The skin of a droplet between two particles.
+def bridge(parts: Question, ends: Ends) -> Foot:
+    """The skin of a droplet between two solids.
 
     Raises
     ------
@@ -56,29 +87,20 @@ def bridge(parts: Question, particles: Sequence[Sphere]) -> Foot:
         A start, a penalty, or another kind of contact line.
     """
     if parts.start is not None or parts.law.penalty is not None:
-        raise SceneError("particle: a droplet between two needs its own start and no penalty")
+        raise SceneError("particle: a droplet between two solids needs its own start, no penalty")
     if parts.contact_line not in ("auto", "conforming"):
         raise SceneError(
             f'solver.contact_line = "{parts.contact_line}": between two particles it is '
             '"conforming"; leave it out'
         )
     mesh, scale, gamma = parts.asked.mesh(), parts.scale, parts.liquid.surface_tension
-    low, high = (scale.local_sphere(each) for each in particles)
-    (z0, z1), (r0, r1), bulge = _barrel(low, high, 4.0 * np.pi / 3.0)
-
-    def profile(t: Array) -> tuple[Array, Array, Array]:
-        s = 2.0 * t - 1.0
-        r = r0 + (r1 - r0) * t + bulge * (1.0 - s * s)
-        return r, z0 + (z1 - z0) * t, r1 - r0 - 4.0 * bulge * s
-
-    space = ring_space(mesh.space, mesh.degree, mesh.elements)
-    start = axisymmetric(space, profile)
-    x, y, z = (float(a) for a in scale.axes[:, 2])
-    lines = [
-        SphereContactLine(gamma, particles[0], "xi2=0", toward=(x, y, z)),
-        SphereContactLine(gamma, particles[1], "xi2=1", toward=(-x, -y, -z)),
-    ]
-    supports = [Sliding(line.edge, line.sphere) for line in lines]
+    low, high = End.of(_local(scale, ends[0]), 1.0), End.of(_local(scale, ends[1]), -1.0)
+    arc = least_energy_toroid(low, high, BALL)
+    start = axisymmetric(ring_space(mesh.space, mesh.degree, mesh.elements), arc)
+    lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2])]
+    lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2]))
+    supports = [Sliding("xi2=0", None if isinstance(ends[0], Plane) else ends[0])]
+    supports.append(Sliding("xi2=1", ends[1]))
     surface = start.moved(scale.to_world(start.points))
     # it may give way sideways, so that no smaller model than half tells whether it is stable
     sector = sector_of(mesh, parts.bond)
@@ -87,45 +109,13 @@ def bridge(parts: Question, particles: Sequence[Sphere]) -> Foot:
     return Foot(surface, sector, mesh, lines, supports)
 
 
-def _barrel(
-    low: Sphere, high: Sphere, volume: float
-) -> tuple[tuple[float, float], tuple[float, float], float]:
-    """Heights and radii of the circles, and the bulge, of the barrel of least energy."""
-    polar = np.radians(np.linspace(2.0, WIDEST, 120))
-    one, two = polar[:, None], polar[None, :]
-    z0 = low.center[2] + low.radius * np.cos(one)
-    z1 = high.center[2] - high.radius * np.cos(two)
-    r0, r1 = low.radius * np.sin(one), high.radius * np.sin(two)
-    height = z1 - z0
-    held = volume + _cap(low.radius, one) + _cap(high.radius, two)
-    # mean of (linear + bulge (1 - s^2))^2 over the height
-    square = (r0**2 + r0 * r1 + r1**2) / 3.0
-    half = (r0 + r1) / 3.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = half**2 - 8.0 / 15.0 * (square - held / (np.pi * height))
-        bulge = (np.sqrt(root) - half) * 15.0 / 8.0
-    t, w = gauss(12)
-    s = 2.0 * t - 1.0
-    r = r0[..., None] + (r1 - r0)[..., None] * t + bulge[..., None] * (1.0 - s * s)
-    slope = (r1 - r0)[..., None] - 4.0 * bulge[..., None] * s
-    area = 2.0 * np.pi * (r * np.hypot(slope, height[..., None])) @ w
-    wet = [
-        2.0
-        * np.pi
-        * ball.radius**2
-        * (1.0 - np.cos(angle))
-        * np.cos(np.radians(ball.contact_angle))
-        for ball, angle in ((low, one), (high, two))
-    ]
-    energy = area - wet[0] - wet[1]
-    thick = (r.min(axis=-1) > 0.0) & (height > 0.0) & np.isfinite(energy)
-    i, j = np.unravel_index(np.where(thick, energy, np.inf).argmin(), energy.shape)
-    return (
-        (float(z0[i, 0]), float(z1[0, j])),
-        (float(r0[i, 0]), float(r1[0, j])),
-        float(bulge[i, j]),
-    )
+def _local(scale: Scale, solid: Plane | Sphere) -> Plane | Sphere:
+    return solid if isinstance(solid, Plane) else scale.local_sphere(solid)
 
 
-def _cap(radius: float, polar: Array) -> Array:
-    return np.asarray(np.pi * radius**3 * (2 + np.cos(polar)) * (1 - np.cos(polar)) ** 2 / 3)
+def _line(gamma: float, solid: Plane | Sphere, edge: str, toward: Array) -> LineTerm:
+    """The contact line on a solid, whose liquid lies in a direction."""
+    if isinstance(solid, Plane):
+        return PlaneContactLine(gamma, solid.contact_angle, edge)
+    x, y, z = (float(a) for a in toward)
+    return SphereContactLine(gamma, solid, edge, toward=(x, y, z))

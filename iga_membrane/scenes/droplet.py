@@ -31,7 +31,8 @@ from ..terms.term import ROOM
 from .approach import from_alone, from_another_angle
 from .asperities import STARTS
 from .beside import check_particles
-from .bridge import axes_between, bridge, moved_apart, room_between
+from .bridge import CLOSE, at_gap, bridge, ends_of, gap_between
+from .bridge import frame_of as frame_between
 from .description import described_droplet
 from .foot import CONTACT_LINES, foot_of
 from .free import at_displacement, frame_of, pulled_by, seat_of
@@ -126,18 +127,19 @@ def sessile_droplet(
         substrate, beside = seat_of(grains, hold), ()
     check_fixed(substrate)
     acceleration = np.array(gravity)
-    bridges = asked_substrate is None and len(grains) == 2
-    if bridges:
-        origin, axes = grains[0].center, axes_between(grains)
+    length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
+    ends = ends_of(asked_substrate, grains, contact_line, length)
+    if ends is not None:
+        origin, axes = frame_between(ends)
     else:
         origin, axes = _frame(substrate, free=asked_substrate is None)
     local = acceleration @ axes
     # a scene that is turned as a whole leans by rounding
     local[np.abs(local) <= ROUNDING * np.abs(local).max()] = 0.0
-    length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
-    if grains or penalty is not None or start is not None:
+    others: list[str] = []
+    if ends is None and (grains or penalty is not None or start is not None):
         contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
-    else:
+    elif ends is None:
         pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
         contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
@@ -147,7 +149,7 @@ def sessile_droplet(
     if is_own(substrate):
         check_solid(substrate, origin, length)
     across = float(np.linalg.norm(bond[:2]))
-    hangs = asked_substrate is None and not bridges and hold == "none"
+    hangs = asked_substrate is None and ends is None and hold == "none"
     if hangs and across > 1e-9 * np.linalg.norm(bond):
         raise SceneError(
             "gravity.direction: a free droplet hangs on its particle along gravity, here they "
@@ -164,8 +166,8 @@ def sessile_droplet(
     )
     held = "" if hold == "none" else hold
     parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, beside, held)
-    if bridges:
-        built = bridge(parts, fixed(grains))
+    if ends is not None:
+        built = bridge(parts, ends)
     else:
         built = with_particles(parts) if beside else foot_of(parts)
     sector = built.sector
@@ -203,12 +205,10 @@ def sessile_droplet(
     )
     described = described_droplet(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
-    if bridges and (near := -room_between(grains, length)) < 0.0:
-
-        def apart(displacement: float) -> Scene:
-            return again(particles=[grains[0], moved_apart(grains, displacement)])
-
-        ramp = Ramp("particle[1] displacement", (near, 0.0), apart)
+    if ends is not None and (gap := gap_between(ends)) > (near := CLOSE * length):
+        ramp = Ramp(
+            "gap", (near, gap), lambda gap: again(particles=[*grains[:-1], at_gap(ends, gap)])
+        )
     elif bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
     elif asked_substrate is None and held:
@@ -233,8 +233,10 @@ def sessile_droplet(
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
-    if asked_substrate is None:
-        toward = axes[:, 2] * [[1.0], [-1.0]][: len(grains)]
+    if ends is not None or asked_substrate is None:
+        toward = (
+            axes[:, 2] * ([[1.0], [-1.0]] if asked_substrate is None else [[-1.0]])[: len(grains)]
+        )
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
     if others:

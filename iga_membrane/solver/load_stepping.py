@@ -15,6 +15,7 @@ from ..scenes.scene import Ramp, Scene
 from ..surface.reparametrize import regridded
 from .assembly import Assembly
 from .footing import footing
+from .foretold import Foretold
 from .inverse_root import SingularMatrix
 from .newton import NewtonOptions, NewtonResult, newton
 from .predictor import first
@@ -154,12 +155,13 @@ def load_stepping(
         path.result, found = reached(scene, result)
         _note(journal, path, step, assembly, found)
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
+    ahead, aim = Foretold(), None
     while path.last_good < 1.0:
         stop = float(stops[np.searchsorted(stops, path.last_good, "right")])
         if ramp.short_of_bound(path.last_good) <= BRACKET:
             _bounded(path, ramp, path.result.index)
             break
-        load = min(stop, path.last_good + step)
+        load = min(stop, path.last_good + step if aim is None else aim)
         if ramp.short_of_bound(load) <= 0.0:
             # what the bound rules out is not tried: half the way to it
             load = path.last_good + 0.5 * (ramp.load_at_bound(path.last_good) - path.last_good)
@@ -176,17 +178,44 @@ def load_stepping(
                 path.result, found = reached(scene, result)
             step *= 1.5 if len(result.iterations) > 5 else 2.0
             _note(journal, path, step, assembly, found)
+            ahead.reached(load)
+            aim = _aim(ahead, assembly, path, ramp)
         elif result.status is Status.INTERRUPTED:
             path.result.status, path.result.message = result.status, result.message
             break
         else:
+            narrow = load - path.last_good <= _sufficient(ramp, path.last_good, load)
             step = 0.5 * min(step, load - path.last_good)
-            lo, hi = ramp.value(path.last_good), ramp.value(load)
-            lost = step < smallest and abs(hi - lo) <= BRACKET * max(abs(lo), abs(hi))
+            lost = narrow and (step < smallest or result.status is None)
             if lost or len(path.steps) > ATTEMPTS * len(stops):
                 _give_up(assembly, path, ramp, load, result, attempts)
                 break
+            if ahead.lost is None or load < ahead.lost:
+                ahead.lost = load
+                if result.status is None and (verdict := _verdict(assembly, result)):
+                    ahead.beyond = load, verdict.smallest
+            assembly.load(path.scene)
+            aim = _aim(ahead, assembly, path, ramp)
     return path
+
+
+def _sufficient(ramp: Ramp, one: float, two: float) -> float:
+    """Width of a sufficient bracket between two loads."""
+    lo, hi = ramp.value(one), ramp.value(two)
+    return BRACKET * max(abs(lo), abs(hi)) / abs(hi - lo) * (two - one)
+
+
+def _aim(ahead: Foretold, assembly: Assembly, path: LoadPath, ramp: Ramp) -> float | None:
+    """The next load by what is foretold once an attempt has failed; the assembly has taken that of
+    the last good state."""
+    if ahead.lost is None:
+        return None
+    if not ahead.good or ahead.good[-1][0] < path.last_good:
+        verdict = _verdict(assembly, path.result)
+        if verdict is None:
+            return None
+        ahead.good.append((path.last_good, verdict.smallest))
+    return ahead.next(_sufficient(ramp, path.last_good, ahead.lost))
 
 
 def _note(
@@ -271,6 +300,15 @@ def _give_up(
     if ramp.short_of_bound(path.last_good) <= BOUNDED and ramp.short_of_bound(1.0) <= 0.0:
         _bounded(path, ramp, failed.index)
         return
+    narrow = load - path.last_good <= _sufficient(ramp, path.last_good, load)
+    if failed.status is None and narrow:
+        path.result.status = Status.LIMIT_POINT
+        path.bracket = Bracket(ramp.parameter, lo, hi, path.result.index, failed.index)
+        path.result.message = (
+            f"no stable equilibrium beyond {ramp.parameter} = {lo:.6g} ({ramp.values[-1]:.6g} was "
+            f"asked for): the one at {hi:.6g} has {failed.index} negative eigenvalue(s)"
+        )
+        return
     step = load - path.last_good
     back = max(0.0, path.last_good - step)
     earlier = _attempt(assembly, path, ramp(back), options)
@@ -294,13 +332,12 @@ def _give_up(
             f"{left:.2g}"
         )
         return
-    reason = failed.message or f"{failed.index} negative eigenvalues"
     # the user's own limit of iterations, not the steps, may be what is too small
     limited = failed.status is Status.MAX_ITER and options.max_iterations < PATIENCE
     path.result.status = Status.MAX_ITER if limited else Status.STALLED
     path.result.message = (
         f"load stepping stopped at {ramp.parameter} = {lo:.6g} of {ramp.values[-1]:.6g}, with "
-        f"steps of {hi - lo:.1e} ({reason})"
+        f"steps of {hi - lo:.1e} ({failed.message or 'unstable'})"
     )
 
 

@@ -32,6 +32,10 @@ POLISHES = 2
 """Walks by arc length after the steps have become small; each costs one or two iterations."""
 POLISHED = 1e-6
 """Distortion that a last walk leaves alone."""
+UNEVEN, FALLING = 1e-3, 0.3
+"""Distortion of a converged state that is mended and the iteration begun again, and over that of
+the time before at most: contact lines that are nearly tangent to their solid slide far along it,
+and find their place on an even mesh only."""
 DISTORTED = 0.2
 """Distortion that is mended at once, also while steps are large."""
 ROUNDS = 30
@@ -178,7 +182,7 @@ def _iterate(
 ) -> None:
     """Newton steps until convergence; improves ``result`` in place."""
     polish = POLISHES
-    flee, approached = False, None
+    flee, approached, uneven = False, None, np.inf
     left, rounds, crawling, rolled = options.max_iterations, 0, 0, 0
     steady, reach = False, ROLL
     way: Array = np.zeros(3)
@@ -251,7 +255,12 @@ def _iterate(
                 left, rounds = options.max_iterations, assembly.rounds
             continue
         if full and size <= options.tolerance:
-            return
+            twist = 0.0 if grading is None else distortion(result.surface, grading)
+            if grading is None or not UNEVEN < twist <= FALLING * uneven:
+                return
+            result.surface = regridded(result.surface, grading)
+            uneven, polish = twist, POLISHES
+            continue
         if full and residual <= FLOOR and size <= 1e-6:
             result.floor = residual  # of an ill-conditioned state, or of a tolerance below it
             return

@@ -255,7 +255,7 @@ def _iterate(
         steps = steps + path.steps
         if path.result.status is None:
             return Outcome(path.scene, path.result, steps)
-        partial = path.last_good > 0 and direct.status is not None
+        partial = path.last_good > 0 and (direct.status is not None or path.bracket is not None)
         outcome = Outcome(scene, direct, steps, progress=path.progress)
         if partial:
             outcome = Outcome(path.scene, path.result, steps, path.bracket, path.progress)

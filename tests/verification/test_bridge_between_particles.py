@@ -104,9 +104,9 @@ def test_too_little_liquid_to_bridge_is_named_and_bracketed():
     pair = [iga.Sphere(60.0, 0.8, (0.0, 0.0, z)) for z in (-1.5, 1.5)]
     found = iga.solve(bridge(pair, 0.5, 0.8), on_fail="return")
     assert found.status is iga.Status.LIMIT_POINT
-    assert found.bracket.parameter == "particle[1] displacement"
-    nearer = iga.Sphere(60.0, 0.8, (0.0, 0.0, 1.5 + found.bracket.lo))
-    assert found.bracket.hi < 0.0
+    assert found.bracket.parameter == "gap"
+    assert found.bracket.lo < found.bracket.hi < 1.4
+    nearer = iga.Sphere(60.0, 0.8, (0.0, 0.0, -0.7 + found.bracket.lo + 0.8))
     assert iga.solve(bridge([pair[0], nearer], 0.5, 0.8)).success
 
 

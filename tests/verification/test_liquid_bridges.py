@@ -1,0 +1,115 @@
+"""Bridges between wetting solids against an independent axisymmetric solution."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+import iga_membrane as iga
+from iga_membrane.reference import bridge_between, limit_of_stability
+
+PLANE = np.inf
+SEED = 20261130
+"""Of the generated members."""
+
+
+def scene(radii, angles, gap, volume, **more):
+    """A bridge over z = 0 with its lower solid's point on the axis in the origin."""
+    one, two = radii
+    upper = iga.Sphere(angles[1], two, (0.0, 0.0, two + gap))
+    if np.isinf(one):
+        return iga.sessile_droplet(iga.Plane(angles[0]), volume=volume, particles=[upper], **more)
+    lower = iga.Sphere(angles[0], one, (0.0, 0.0, -one))
+    return iga.sessile_droplet(None, volume=volume, particles=[lower, upper], **more)
+
+
+def member(number):
+    """One of the kind, with the witness's solution: radii, contact angles of 0.5 to 90 degrees, a
+    gap and a volume."""
+    rng = np.random.default_rng((SEED, number))
+    while True:
+        radii = float(rng.choice([PLANE, 1.0, 1.0, 3.0])), float(rng.choice([0.3, 1.0, 2.0]))
+        spread = rng.uniform(0.5, 90.0, 2), np.exp(rng.uniform(np.log(0.5), np.log(30.0), 2))
+        angles = tuple(float(a) for a in spread[number % 2])
+        gap, volume = (float(10.0 ** rng.uniform(-3.0, top)) for top in (0.0, 0.3))
+        try:
+            return radii, angles, gap, volume, bridge_between(radii, angles, gap, volume)
+        except ValueError:
+            continue  # no bridge there
+
+
+def agrees(found, witness):
+    """Forces within 1e-6, pressures within 1e-5."""
+    assert found.success, found.message
+    pull = np.array(found.forces[-1].effective)
+    np.testing.assert_allclose(pull, [0.0, 0.0, -witness.force], atol=1e-6 * abs(witness.force))
+    allowed = 1e-5 * max(abs(witness.pressure), 1.0 / witness.neck_radius)
+    assert found.measures["pressure"] == pytest.approx(witness.pressure, abs=allowed)
+
+
+@pytest.mark.parametrize(
+    "number", [*range(8), *(pytest.param(k, marks=pytest.mark.slow) for k in range(8, 40))]
+)
+def test_forces_and_pressures_between_any_two_solids(number):
+    *asked, witness = member(number)
+    agrees(iga.solve(scene(*asked)), witness)
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        ((1.0, 1.0), (0.5, 0.5), 0.001, 0.001),
+        ((PLANE, 1.0), (0.5, 0.5), 0.05, 0.01),
+        ((1.0, 4.0), (0.655, 1.294), 0.1947, 0.2009),
+        ((50.0, 50.0), (110.0, 60.0), 0.6, 1.0),
+        ((PLANE, 1.0), (40.0, 40.0), 0.3, 1.0),
+    ],
+)
+def test_nearly_tangent_lines_thin_gaps_and_flat_spheres(asked):
+    agrees(iga.solve(scene(*asked)), bridge_between(*asked))
+
+
+def test_weight_along_the_axis():
+    asked = (0.8, 1.0), (50.0, 65.0), 0.15, 0.3
+    witness = bridge_between(*asked, bond=1.2)
+    agrees(iga.solve(scene(*asked, gravity=1.2)), witness)
+
+
+@lru_cache
+def limit():
+    return limit_of_stability((1.0, 1.0), (60.0, 60.0), (0.5, 0.8), 0.1)
+
+
+@pytest.mark.parametrize("gap", [0.698, 0.74, pytest.param(0.9, marks=pytest.mark.slow)])
+def test_loss_of_stability_is_bracketed(gap):
+    """Of the motion that is odd about the middle: symmetric bridges exist up to a gap of 0.817."""
+    found = iga.solve(scene((1.0, 1.0), (60.0, 60.0), gap, 0.1), on_fail="return")
+    assert found.status is iga.Status.LIMIT_POINT
+    bracket = found.bracket
+    assert bracket.parameter == "gap"
+    assert bracket.lo <= limit() * (1.0 + 1e-4)
+    assert bracket.hi >= limit() * (1.0 - 1e-4)
+    assert bracket.hi - bracket.lo <= 1e-3 * limit()
+
+
+def test_path_in_the_gap_ends_at_the_loss_of_stability():
+    """Of unequal spheres, at a fold."""
+    asked = (1.0, 2.0), (45.0, 70.0)
+    end = limit_of_stability(*asked, (0.2, 0.9), 0.1)
+    path = iga.trace(
+        lambda gap: scene(*asked, gap, 0.1), [0.1, 0.5 * end, 1.2 * end], parameter="gap",
+        on_fail="return",
+    )  # fmt: skip
+    assert len(path.solutions) == 2
+    assert path.end.status is iga.Status.LIMIT_POINT
+    assert path.bracket.lo == pytest.approx(end, rel=1e-3)
+    assert path.bracket.hi == pytest.approx(end, rel=1e-3)
+
+
+def test_path_in_the_contact_angle_comes_through():
+    def at(angle):
+        return scene((1.0, 1.0), (angle, angle), 0.05, 0.02)
+
+    path = iga.trace(at, [80.0, 30.0, 5.0, 0.5], parameter="contact_angle")
+    for angle, found in zip(path.values, path.solutions, strict=True):
+        agrees(found, bridge_between((1.0, 1.0), (angle, angle), 0.05, 0.02))
