@@ -9,6 +9,8 @@ import iga_membrane as iga
 from iga_membrane.reference import bridge_between, limit_of_stability
 
 PLANE = np.inf
+ROUND = iga.Discretization(model="eighth")
+"""The witness knows bodies of revolution only."""
 SEED = 20261130
 """Of the generated members."""
 
@@ -97,7 +99,7 @@ def test_path_in_the_gap_ends_at_the_loss_of_stability():
     asked = (1.0, 2.0), (45.0, 70.0)
     end = limit_of_stability(*asked, (0.2, 0.9), 0.1)
     path = iga.trace(
-        lambda gap: scene(*asked, gap, 0.1), [0.1, 0.5 * end, 1.2 * end], parameter="gap",
+        lambda gap: scene(*asked, gap, 0.1, discretization=ROUND), [0.1, 0.5 * end, 1.2 * end], parameter="gap",
         on_fail="return",
     )  # fmt: skip
     assert len(path.solutions) == 2
@@ -108,7 +110,7 @@ def test_path_in_the_gap_ends_at_the_loss_of_stability():
 
 def test_path_in_the_contact_angle_comes_through():
     def at(angle):
-        return scene((1.0, 1.0), (angle, angle), 0.05, 0.02)
+        return scene((1.0, 1.0), (angle, angle), 0.05, 0.02, discretization=ROUND)
 
     path = iga.trace(at, [80.0, 30.0, 5.0, 0.5], parameter="contact_angle")
     for angle, found in zip(path.values, path.solutions, strict=True):
