@@ -98,10 +98,12 @@ def test_path_in_the_gap_ends_at_the_loss_of_stability():
     """Of unequal spheres, at a fold."""
     asked = (1.0, 2.0), (45.0, 70.0)
     end = limit_of_stability(*asked, (0.2, 0.9), 0.1)
-    path = iga.trace(
-        lambda gap: scene(*asked, gap, 0.1, discretization=ROUND), [0.1, 0.5 * end, 1.2 * end], parameter="gap",
-        on_fail="return",
-    )  # fmt: skip
+
+    def at(gap):
+        return scene(*asked, gap, 0.1, discretization=ROUND)
+
+    gaps = [0.1, 0.5 * end, 1.2 * end]
+    path = iga.trace(at, gaps, parameter="gap", on_fail="return")
     assert len(path.solutions) == 2
     assert path.end.status is iga.Status.LIMIT_POINT
     assert path.bracket.lo == pytest.approx(end, rel=1e-3)
