@@ -17,6 +17,7 @@ from ..terms import (
     LocalGap,
     Stabilization,
     TrimmedContactLine,
+    WettingLine,
 )
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def check_parts(scene: Scene) -> None:
         raise SceneError("terms: pressure and volume are both prescribed; give one of them")
     sliding = [s.edge for s in scene.supports if isinstance(s, Sliding)]
     for term in scene.terms:
-        if isinstance(term, LineTerm) and term.edge in sliding and term.strength >= term.gamma:
+        if isinstance(term, WettingLine) and term.edge in sliding and term.strength >= term.gamma:
             raise SceneError(
                 "contact_angle = 180: a contact line that slides freely has no place at 180 "
                 "degrees, where the foot is a contact area; build the scene by "

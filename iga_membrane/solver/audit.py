@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -23,15 +23,16 @@ from ..surface.sector import sector_table
 from ..surface.supports import Fixed, Sector, Symmetry
 from ..surface.surface import Surface
 from ..terms import (
+    AreaTerm,
     BodyDensity,
     LineTerm,
     LocalGap,
     NormalLineLoad,
     Pressure,
     SphereContactLine,
-    SurfaceTension,
     Term,
     Volume,
+    WettingLine,
 )
 from .assembly import TINY
 from .balance import Loads, line_balance
@@ -39,6 +40,7 @@ from .contact import ContactSet
 from .contact_line import ContactLine, contact_line, vertical_forces
 from .evidence import Audit
 from .measures import sphere_of
+from .own_lines import nodal_forces, outward_pull
 from .point_supports import PointSupports
 from .wetted_cap import WettedCap
 
@@ -70,7 +72,7 @@ def audit(
     """
     space, sector = surface.space, scene.sector
     terms = scene.local_terms()
-    tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
+    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
     laws = [term for term in terms if isinstance(term, LocalGap)]
@@ -103,8 +105,8 @@ def audit(
         pull = -contact.table.values.transpose(0, 2, 1) @ carried
         scatter(total, absolute, motion, contact.table.functions, pull)
     others = [float(push[2])] if contact is not None else []
-    for edge, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
-        scatter(total, absolute, motion, edge.functions, edge_pull)
+    for which, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
+        scatter(total, absolute, motion, which, edge_pull)
         if scene.line_inside is not None:
             others.append(-sector.copies * float(edge_pull[..., 2].sum()))
     found = Audit(
@@ -114,7 +116,7 @@ def audit(
     )
     if contact is not None:
         return replace(found, **_lying(scene, surface, body, loads, contact, others, points))
-    lines = [t for t in terms if isinstance(t, LineTerm)]
+    lines = [t for t in terms if isinstance(t, WettingLine)]
     if not lines:
         depth = max(0.0, -lowest) / surface.size if laws else None
         return replace(found, penetration=depth)
@@ -141,7 +143,7 @@ def _lying(
         found["penetration"], found["deepest"] = _depth(surface, contact, points)
         found["angle"] = _tilt(surface, contact)
     if scene.line_inside is not None:
-        term = next(t for t in scene.local_terms() if isinstance(t, LineTerm))
+        term = next(t for t in scene.local_terms() if isinstance(t, WettingLine))
         line = contact_line(surface, scene.line_inside, 2 * points[0], sphere_of(scene))
         found["angle"] = cosine_error(line, -term.strength / term.gamma - 1.0)
     if is_hung(scene):
@@ -162,7 +164,7 @@ def _ending(
     surface: Surface,
     body: BodyDensity,
     inside: float,
-    lines: list[LineTerm],
+    lines: list[WettingLine],
     points: tuple[int, int],
 ) -> dict[str, Any]:
     """Defects of a membrane that ends on solids.
@@ -172,23 +174,25 @@ def _ending(
     inside : volume behind the membrane alone.
     """
     sector = scene.sector
-    tension = sum(t.gamma for t in scene.local_terms() if isinstance(t, SurfaceTension))
+    tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
     found: dict[str, Any] = {}
     cosine, sunk, pull, carried = 0.0, 0.0, np.zeros(3), 0.0
-    foot, on_spheres = None, False
+    foot, on_spheres, standing = None, False, 90.0
     for term in lines:
         sphere = term.sphere if isinstance(term, SphereContactLine) else None
         line = contact_line(surface, term.edge, 2 * points[0], sphere)
-        cosine = max(cosine, cosine_error(line, -term.strength / tension), key=abs)
+        young = young_cosine(scene, surface, term, line)
+        angle = float(np.arccos(np.clip(young, -1.0, 1.0)))
+        cosine = max(cosine, cosine_error(line, young), key=abs)
         gap, nearest = _nearest(surface, points, sector, sphere)
         found.setdefault("deepest", nearest)
         if not isinstance(term, SphereContactLine):
-            found["penetration"], foot = max(0.0, -gap), line
+            found["penetration"], foot, standing = max(0.0, -gap), line, float(np.degrees(angle))
             continue
         on_spheres = True
         cap = WettedCap(line, term.sphere, term.toward)
         inside -= cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
-        line_pull = _line_pull(cap, tension)
+        line_pull = _line_pull(cap, tension, angle)
         pull += line_pull + cap.push(body)
         carried += float(abs(line_pull[2]) + abs(cap.push(body)[2]))
         away = float(np.abs(term.sphere.gap(line.position)).max())
@@ -204,8 +208,7 @@ def _ending(
         # of the weight, unless it is nothing beside what balances at the line
         missing, size = weight + float(pull[2]), max(abs(weight), NOTHING * carried, TINY)
     else:
-        angle = np.degrees(np.arccos(np.clip(-lines[0].strength / tension, -1.0, 1.0)))
-        forces = vertical_forces(foot, body, tension, float(angle))
+        forces = vertical_forces(foot, body, tension, standing)
         missing = forces.push - forces.line - weight - float(pull[2])
         size = abs(forces.push) + abs(forces.line) + abs(weight + float(pull[2]))
     found["force"] = abs(missing) / size
@@ -248,10 +251,33 @@ def relative_residual(total: Array, absolute: Array, tension: float) -> float | 
     return float(np.linalg.norm(total[:-1])) / size
 
 
-def _line_pull(cap: WettedCap, tension: float) -> Array:
-    """(3,) force of the membrane on a sphere at Young's angle: along
+def pays_otherwise(term: Term) -> TypeGuard[LineTerm]:
+    """Whether a line pays for something else than wetting or what holds it on its solid."""
+    return isinstance(term, LineTerm) and not isinstance(term, (WettingLine, NormalLineLoad))
+
+
+def young_cosine(scene: Scene, surface: Surface, term: WettingLine, line: ContactLine) -> float:
+    """Mean cosine of the angle at which a contact line is in balance: Young's, and what other lines
+    along the same edge pull outwards."""
+    terms = scene.local_terms()
+    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+    normal = np.broadcast_to([0.0, 0.0, 1.0], line.position.shape)
+    if isinstance(term, SphereContactLine):
+        normal = term.sphere.normal(line.position)
+    along, _ = surface.space.edge_place(term.edge)
+    points = len(line.arc) // surface.space.bases[along].elements
+    pull = sum(
+        outward_pull(t, surface.space.edge_table(t.edge, points), surface, line, normal)
+        for t in terms
+        if pays_otherwise(t) and t.edge == term.edge
+    )
+    return -(term.strength + pull) / tension
+
+
+def _line_pull(cap: WettedCap, tension: float, angle: float) -> Array:
+    """(3,) force of the membrane on a sphere at an angle (radians): along
     ``sin(theta) n + cos(theta) n x t``."""
-    line, angle = cap.line, np.radians(cap.sphere.contact_angle)
+    line = cap.line
     normal = cap.sphere.normal(line.position)
     along = np.sin(angle) * normal + np.cos(angle) * np.cross(normal, line.tangent)
     return np.asarray(tension * line.arc @ along)
@@ -259,25 +285,29 @@ def _line_pull(cap: WettedCap, tension: float) -> Array:
 
 def edge_forces(
     scene: Scene, surface: Surface, line_load: Array, points: int
-) -> Iterator[tuple[EdgeTable, Array]]:
-    """Nodal forces (elements, local, 3) of the contact lines at the membrane's edges, with
-    Gauss points along them."""
+) -> Iterator[tuple[Index, Array]]:
+    """Control points (elements, local) and forces (elements, local, 3) on them of the lines at the
+    membrane's edges, with Gauss points along them."""
     ring = np.arange(surface.space.bases[0].elements // scene.sector.copies)
     for term in scene.local_terms():
         if not isinstance(term, LineTerm):
             continue
         edge = surface.space.edge_table(term.edge, points, ring)
+        if pays_otherwise(term):
+            yield nodal_forces(term, edge, surface)
+            continue
         tangent = edge.d @ surface.points[edge.functions]
         x = edge.values @ surface.points[edge.functions]
         if isinstance(term, NormalLineLoad):
-            yield edge, _pressed(term, edge, x, tangent)
+            yield edge.functions, _pressed(term, edge, x, tangent)
             continue
         up, turn = np.broadcast_to([0.0, 0.0, 1.0], x.shape), 1.0
         if isinstance(term, SphereContactLine):
             up, turn = term.sphere.normal(x), term.turn
         load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
         density = turn * term.strength * np.cross(tangent, up) - load[..., None] * up
-        yield edge, edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
+        pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
+        yield edge.functions, pull
 
 
 def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) -> Array:
@@ -305,7 +335,7 @@ def stands_free(scene: Scene) -> bool:
 def is_hung(scene: Scene) -> bool:
     """Whether edges are held that no solid carries: an edge that leaves its solid at 180 degrees
     is fixed where it does so by itself."""
-    tangent = {t.edge for t in scene.terms if isinstance(t, LineTerm) and t.strength >= t.gamma}
+    tangent = {t.edge for t in scene.terms if isinstance(t, WettingLine) and t.strength >= t.gamma}
     return any(
         isinstance(s, Symmetry) or (isinstance(s, Fixed) and s.edge not in tangent)
         for s in scene.supports

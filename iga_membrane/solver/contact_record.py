@@ -10,8 +10,9 @@ import numpy as np
 from ..arrays import Array
 from ..scenes.scene import Scene
 from ..solids import SphereLattice, Spheres
-from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from ..terms import PlaneContactLine, Scale, SphereContactLine, WettingLine
 from .assembly import Assembly
+from .audit import young_cosine
 from .contact_line import contact_line, vertical_forces
 from .evidence import Audit
 from .footing import footing, touches_base
@@ -30,16 +31,18 @@ def contact_record(
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
     on_area = assembly.contact is not None and scene.line_inside is None
-    if on_area or (assembly.trim is not None and not assembly.edges.lines):
+    if on_area or (assembly.trim is not None and not assembly.edges.wetted):
         return _footing(scene, assembly, result, found, checked)
-    line = next((t for t in scene.local_terms() if isinstance(t, LineTerm)), None)
+    line = next((t for t in scene.local_terms() if isinstance(t, WettingLine)), None)
     if line is None:
         return {}
     unit, pulls = scale.length, []
     if isinstance(line, PlaneContactLine):
         body = assembly.density(result.multipliers)
         at = contact_line(surface, line.edge)
-        forces = vertical_forces(at, body, line.gamma, line.contact_angle)
+        cosine = np.clip(young_cosine(scene, surface, line, at), -1.0, 1.0)
+        angle = float(np.degrees(np.arccos(cosine)))
+        forces = vertical_forces(at, body, assembly.tension, angle)
         support, solids = forces.push - forces.line, 1
     else:
         pulls = [

@@ -10,7 +10,7 @@ from ..arrays import Array, Index
 from ..scenes.scene import Scene
 from ..splines import EdgeTable, Space
 from ..surface.supports import Sliding
-from ..terms import BodyDensity, LineTerm
+from ..terms import BodyDensity, LineTerm, WettingLine
 from ..terms.edge_gap import EdgeGap
 from .linear import Matrix
 from .rows import FirstOrder, Rows
@@ -28,7 +28,7 @@ class EdgeLines:
 
     Attributes
     ----------
-    lines : line terms, each with the functions of its edge.
+    lines : line terms, each with the functions of its edge; wetted : those of contact lines.
     gaps : gaps to curved solids, each with the functions of its edge.
     """
 
@@ -38,6 +38,7 @@ class EdgeLines:
 
         self._rows = rows
         self.lines = [(t, edge(t.edge)) for t in scene.local_terms() if isinstance(t, LineTerm)]
+        self.wetted = [(t, edge) for t, edge in self.lines if isinstance(t, WettingLine)]
         self.gaps = [
             (EdgeGap(s.solid, s.edge), edge(s.edge))
             for s in scene.local_supports()
@@ -58,12 +59,12 @@ class EdgeLines:
     def wetting(self, points: Array) -> tuple[float, float]:
         """Energy of the wetted surface inside the lines and its area."""
         none = BodyDensity()
-        energy = sum(t.energy(edge, points, t.strength, none) for t, edge in self.lines)
+        energy = sum(t.energy(edge, points, t.strength, none) for t, edge in self.wetted)
         return energy, sum(self.wet_areas(points))
 
     def wet_areas(self, points: Array) -> list[float]:
-        """Area inside each line."""
-        return [t.energy(edge, points, 1.0, BodyDensity()) for t, edge in self.lines]
+        """Area inside each contact line."""
+        return [t.energy(edge, points, 1.0, BodyDensity()) for t, edge in self.wetted]
 
     def gap_values(self, points: Array) -> Array:
         """(gap_count,) gap integrals by number."""

@@ -160,9 +160,9 @@ class Functional:
         """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
         eq. (23), and tractions of the penalty count per area of it."""
         normals = self.spines.on(surface).directions[: self._space.count].copy()
-        if self.contact is not None and self.edges.lines:
+        if self.contact is not None and self.edges.wetted:
             # the contact line is a kink, which has no tangent plane
-            normals[self._space.edge_functions(self.edges.lines[0][0].edge)] = 0.0
+            normals[self._space.edge_functions(self.edges.wetted[0][0].edge)] = 0.0
         self.stabilizer = Stabilizer(term, self.table, surface.points, normals)
         if self.contact is not None:
             self.contact.area = self.stabilizer.before.area

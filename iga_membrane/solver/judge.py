@@ -13,11 +13,11 @@ from ..terms import (
     BodyTerm,
     Constraint,
     Contact,
-    LineTerm,
     LocalGap,
     PlaneContactLine,
     TrimmedContactLine,
     Volume,
+    WettingLine,
 )
 from .assembly import Assembly
 from .contact_line import contact_line
@@ -103,7 +103,7 @@ def rests_on_a_point(scene: Scene) -> tuple[Status, str, str] | None:
     """How a droplet ends that nothing presses onto solids that it does not wet at all, or None:
     it has no foot there, whatever the mesh makes of it."""
     terms = scene.local_terms()
-    solids = [t for t in terms if isinstance(t, (Contact, LineTerm, TrimmedContactLine))]
+    solids = [t for t in terms if isinstance(t, (Contact, WettingLine, TrimmedContactLine))]
     repel = all(
         not t.adhesion
         if isinstance(t, Contact)

@@ -58,7 +58,7 @@ def measures(
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
-    elif scene.kind == "sessile_droplet" and (on_area or not assembly.edges.lines):
+    elif scene.kind == "sessile_droplet" and (on_area or not assembly.edges.wetted):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
         wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
@@ -104,7 +104,7 @@ def _surface_energies(
     """Energies and areas where the membrane covers the wetted area, without penalty and
     stabilization."""
     scale, table = scene.units, assembly.table
-    (term, edge), edge_place = assembly.edges.lines[0], surface.space.edge_place
+    (term, edge), edge_place = assembly.edges.wetted[0], surface.space.edge_place
     assert isinstance(term, (PlaneContactLine, SphereContactLine))
     at = vary.element_points(table, surface.points)
     free = np.flatnonzero(table.parameters[:, 0, 1] > edge_place(term.edge)[1])
@@ -324,7 +324,7 @@ def _sheet(
 def _under_hole(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     """What the flux of ``z e_z`` through a covered sphere leaves out: the cap inside the fixed edge
     of its membrane."""
-    lines = assembly.edges.lines
+    lines = assembly.edges.wetted
     line = lines[0][0] if lines else None
     if not isinstance(line, SphereContactLine) or not line.covered:
         return 0.0

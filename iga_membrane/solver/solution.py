@@ -19,7 +19,7 @@ from ..solids import Sphere
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
 from ..tables import dataframe
-from ..terms import BodyDensity, Gravity, SurfaceTension, Volume
+from ..terms import AreaTerm, BodyDensity, Gravity, SurfaceTension, Volume
 from .evidence import Audit
 from .forces import ParticleForces
 from .load_stepping import Bracket, LoadStep, Progress
@@ -132,13 +132,14 @@ class Solution:
             for term in scene.terms
             if isinstance(term, Gravity)
         ] or [scene.liquid_density * np.array(scene.acceleration)]
+        gamma = sum(t.gamma for t in scene.terms if isinstance(t, SurfaceTension))
         weight, length = float(np.linalg.norm(np.sum(weights, axis=0))), scene.units.length
         volume = next((term.value for term in scene.terms if isinstance(term, Volume)), None)
         if scene.kind == "sessile_droplet" and volume is not None:
             length = float(np.cbrt(3.0 * volume / (4.0 * np.pi)))
         elif scene.kind == "liquid_sheet" and isinstance(scene.substrate, Sphere):
             length = scene.substrate.radius
-        found = {"bond_number": weight * length**2 / self._tension}
+        found = {"bond_number": weight * length**2 / gamma}
         if scene.kind == "sessile_droplet":
             for name in ("contact_angle_measured", "apparent_angle"):
                 if name in self.measures:
@@ -190,7 +191,8 @@ class Solution:
 
     @property
     def _tension(self) -> float:
-        return sum(t.gamma for t in self.scene.terms if isinstance(t, SurfaceTension))
+        """Energy per area of the membrane."""
+        return sum(t.tension() for t in self.scene.terms if isinstance(t, AreaTerm))
 
     def summary(self) -> str:
         """Status, measures, effort, in a few lines."""

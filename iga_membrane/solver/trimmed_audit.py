@@ -16,7 +16,7 @@ from ..scenes.scene import Scene
 from ..splines import Table
 from ..surface.motion import Motion
 from ..surface.surface import Surface
-from ..terms import BodyDensity, PlaneContactLine, SurfaceTension
+from ..terms import AreaTerm, BodyDensity, PlaneContactLine
 from ..terms.trimmed import Line
 from .assembly import TINY
 from .audit import (
@@ -52,7 +52,7 @@ def trimmed_audit(
     trim : with the contact lines of the state.
     """
     terms, sector = scene.local_terms(), scene.sector
-    tension = sum(t.gamma for t in terms if isinstance(t, SurfaceTension))
+    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
     outside = trim.cut(surface.points, 2 * (surface.space.degree + EXTRA))
     points = 2 * (surface.space.degree + 1)
     dense = surface.space.table(points, trim.elements)
@@ -72,8 +72,8 @@ def trimmed_audit(
     density = tension * (solid - line.cosine[..., None] * membrane) * (arc / sine)[..., None]
     pull = line.table.rows[0].transpose(0, 2, 1) @ density
     scatter(total, absolute, motion, line.table.functions, pull)
-    for edge, pull in edge_forces(scene, surface, np.zeros(len(surface.points)), points):
-        scatter(total, absolute, motion, edge.functions, pull)
+    for which, pull in edge_forces(scene, surface, np.zeros(len(surface.points)), points):
+        scatter(total, absolute, motion, which, pull)
     pull = tension * trim.ties.forces(surface.points)
     scatter(total, absolute, motion, trim.ties.across[0], pull)
     total[trim.ties.idle] = 0.0

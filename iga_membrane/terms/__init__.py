@@ -9,7 +9,7 @@ from .line_load import NormalLineLoad
 from .sphere_wetting import SphereContactLine
 from .stabilization import Stabilization
 from .tension import SurfaceTension
-from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term
+from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term, WettingLine
 from .trimmed import TrimmedContactLine
 from .volume import Centroid, Pressure, Volume
 
@@ -36,4 +36,5 @@ __all__ = [
     "Term",
     "TrimmedContactLine",
     "Volume",
+    "WettingLine",
 ]

@@ -14,12 +14,12 @@ from ..arrays import Array
 from ..checks import choice, contact_angle
 from ..solids import Plane, Solid
 from ..splines import EdgeTable, line
-from .term import LINE_EDGES, BodyDensity, LineTerm, Scale
+from .term import LINE_EDGES, BodyDensity, Scale, WettingLine
 
 
 @dataclass(frozen=True)
 @checked(gamma="liquid.surface_tension", contact_angle=contact_angle, edge=line)
-class PlaneContactLine(LineTerm):
+class PlaneContactLine(WettingLine):
     """Energy ``-gamma cos(theta) A_wet`` of the wetted part of the plane z = 0.
 
     ``A_wet = 1/2 oint (x dy - y dx)`` along the edge. Its variation against the membrane's tension

@@ -26,7 +26,7 @@ from ..errors import GeometryError
 from ..solids import Solid, Sphere
 from ..splines import EdgeTable, line
 from ..splines.space import EDGES
-from .term import BodyDensity, LineTerm, Scale
+from .term import BodyDensity, Scale, WettingLine
 from .variations import cross
 
 RING_EDGES = ("xi2=0", "xi2=1")
@@ -34,7 +34,7 @@ RING_EDGES = ("xi2=0", "xi2=1")
 
 @dataclass(frozen=True)
 @checked(gamma="liquid.surface_tension", edge=line, toward=direction)
-class SphereContactLine(LineTerm):
+class SphereContactLine(WettingLine):
     """Energy ``-gamma cos(theta) A_wet`` of a sphere that the liquid wets, and the part of body
     integrals that lies under the wetted cap.
 

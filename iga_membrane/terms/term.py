@@ -266,20 +266,19 @@ LINE_EDGES = ("xi2=0",)
 
 
 class LineTerm(Term):
-    """A contact line: ``strength`` times the area wetted inside it, and the part of body integrals
-    that the flux through the membrane leaves out because it lies under the wetted area.
+    """An energy along an edge of the membrane, its own number ``strength`` times a functional of
+    the edge, and the part of body integrals that the flux through the membrane leaves out there.
 
     All methods take ``strength`` and ``body`` so that one line serves the energy (its own strength,
     the sum of bodies) and every constraint (no strength, the constraint's density).
     """
 
-    gamma: float
     edge: str
 
     @property
     @abstractmethod
     def strength(self) -> float:
-        """Energy per wetted area, ``-gamma cos(theta)``."""
+        """Energy per unit of the functional: per length for a line tension."""
 
     @abstractmethod
     def energy(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> float:
@@ -292,3 +291,17 @@ class LineTerm(Term):
     @abstractmethod
     def hessian(self, table: EdgeTable, points: Array, strength: float, body: BodyDensity) -> Array:
         """(elements, local, 3, local, 3) second derivative."""
+
+
+class WettingLine(LineTerm):
+    """A contact line: the functional is the area wetted inside it, and ``strength`` its energy per
+    area, ``-gamma cos(theta)``; the body integrals are those under the wetted area.
+
+    Attributes
+    ----------
+    gamma : surface tension.
+    covered : whether the membrane covers the wetted area, too.
+    """
+
+    gamma: float
+    covered: bool = False
