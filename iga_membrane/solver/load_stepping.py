@@ -192,7 +192,7 @@ def load_stepping(
                 break
             if ahead.lost is None or load < ahead.lost:
                 ahead.lost = load
-                if result.status is None and (verdict := _verdict(assembly, result)):
+                if result.status is None and (verdict := _verdict(scene, assembly, result)):
                     ahead.beyond = load, verdict.smallest
             assembly.load(path.scene)
             aim = _aim(ahead, assembly, path, ramp)
@@ -211,7 +211,7 @@ def _aim(ahead: Foretold, assembly: Assembly, path: LoadPath, ramp: Ramp) -> flo
     if ahead.lost is None:
         return None
     if not ahead.good or ahead.good[-1][0] < path.last_good:
-        verdict = _verdict(assembly, path.result)
+        verdict = _verdict(path.scene, assembly, path.result)
         if verdict is None:
             return None
         ahead.good.append((path.last_good, verdict.smallest))
