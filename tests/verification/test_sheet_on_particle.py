@@ -33,7 +33,7 @@ def quick_or_slow(case):
     return pytest.param(case, marks=[pytest.mark.slow] if slow else [], id=case_id(case))
 
 
-@pytest.mark.parametrize("case", map(quick_or_slow, CASES))
+@pytest.mark.parametrize("case", [quick_or_slow(case) for case in CASES])
 def test_sheets_through_the_command_line(case, tmp_path):
     p = case["params"]
     scene = tmp_path / "scene.toml"
