@@ -14,7 +14,7 @@ from ..surface.motion import Block
 from ..surface.sector import mirrors
 from ..surface.supports import Joint, Sliding
 from ..surface.surface import Surface
-from ..terms import Centroid, LineTerm
+from ..terms import Centroid, WettingLine
 from ..terms import variations as vary
 from .assembly import Assembly
 from .second_variation import SecondVariation, mirrored, normal_motions, rigid_motions
@@ -130,7 +130,7 @@ def _rims(scene: Scene) -> list[str]:
             closed.append(support.edge)
         elif isinstance(support, Joint):
             closed += support.edges
-    lines = [t for t in scene.terms if isinstance(t, LineTerm) and t.strength >= t.gamma]
+    lines = [t for t in scene.terms if isinstance(t, WettingLine) and t.strength >= t.gamma]
     closed += [line.edge for line in lines]
     return [edge for edge in scene.surface.space.open_edges if edge not in closed]
 
