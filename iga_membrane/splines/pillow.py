@@ -89,7 +89,7 @@ def _rule(line: Basis, across: int, side: int, aspect: float) -> tuple[Index, In
         pair = (fold + inward).astype(int)[:, None], v[None, :]
         places = pair[across] * line.count + pair[1 - across]
         own = np.abs(inward[:, None]) + np.abs(along) == (np.abs(along).min() * 2)
-        others = ~own & (weight != 0.0)
+        others = ~own & (np.abs(weight) > 1e-12 * np.abs(weight).max())  # not by rounding
         first.append(places[own])
         by.append(places[others])
         share.append(-weight[others] / weight[own])

@@ -84,6 +84,7 @@ def test_lotus_leaf():
     assert fine["wet_fraction"] == pytest.approx(0.5 * coarse["wet_fraction"], rel=0.15)
 
 
+@pytest.mark.slow  # tests/verification has contact lines on droplets among the default tests
 def test_contact_angles_on_asperities():
     found = load("contact_angles_on_asperities").main(
         angles=(180.0, 150.0), radius=0.1, elements=60

@@ -51,6 +51,7 @@ def test_turned_particle_turns_force():
     assert size(pull(turned) - [-fy, fx, fz]) < 1e-6 * size(pull(turned))
 
 
+@pytest.mark.slow
 def test_force_is_slope_of_energy():
     _, normal = place(95.0)
     step, force = 2e-3, pull(solved(elements=24))

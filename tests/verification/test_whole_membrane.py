@@ -60,7 +60,7 @@ def test_flat_droplet(angle):
     mesh = iga.Discretization(degree=3, elements=18)
     scene = iga.sessile_droplet(
         iga.Plane(angle), volume=UNIT_VOLUME, gravity=1.0, discretization=mesh,
-        membrane=iga.WholeMembrane(load_steps=8),
+        membrane=iga.WholeMembrane(load_steps=4),
     )  # fmt: skip
     found = iga.solve(scene)
     for name in ("energy", "p_base", "height", "contact_radius", "A_LG", "A_wet"):
