@@ -49,7 +49,7 @@ def test_a_failed_droplet_says_how_far_it_came(tmp_path):
     solution = iga.solve(droplet(150, 20.0, elements=8), options, on_fail="return")
     record = result(solution)
     assert record["success"] is False
-    assert record["volume_error"] == pytest.approx(solution.audit.volume)
+    assert record["volume_error"] == pytest.approx(solution.audit.volume, rel=1e-5)
     assert record["contact"]["max_penetration"] is not None
     assert len(record["contact"]["deepest_point"]) == 3
     assert record["iterations"][0]["residual"] > 0
