@@ -24,7 +24,7 @@ class Ridges:
 
 
 def main():
-    drop = iga.solve(iga.sessile_droplet(Ridges(), volume=4.19, gravity=1.0))
+    drop = iga.solve(iga.sessile_droplet(Ridges(), volume=4.19, gravity=1.0, hold="xy"))
     return drop, np.ptp(drop.surface.grid(65, 65).position.reshape(-1, 3), axis=0)
 
 

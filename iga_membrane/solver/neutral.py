@@ -146,13 +146,14 @@ def _across(surface: Surface, edge: str) -> Array:
 
 
 def described(scene: Scene, motion: Array) -> str:
-    """A rigid motion (6,) of the scene's scale in words of the world."""
-    axes, shift, turn = scene.units.axes, motion[:3], motion[3:]
+    """A rigid motion (6,) of the scene's scale in words: directions in the scene's frame, as for
+    ``hold``, places in the world."""
+    shift, turn = motion[:3], motion[3:]
     if np.linalg.norm(turn) <= SMALL * np.linalg.norm(motion):
-        return f"translation along {_direction(axes @ shift)}"
+        return f"translation along {_direction(shift)}"
     place = np.round(np.cross(turn, shift) / (turn @ turn), 9) + 0.0  # no -0
     x, y, z = scene.units.to_world(place)
-    return f"rotation about {_direction(axes @ turn)} through ({x:.4g}, {y:.4g}, {z:.4g})"
+    return f"rotation about {_direction(turn)} through ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
 def _direction(vector: Array) -> str:
