@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..surface.ring import axisymmetric, ring_space
-from ..surface.supports import Sector, Sliding
+from ..surface.supports import Sliding
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .question import BALL, Foot, Question, sector_of
 from .toroid import End, least_energy_toroid
@@ -102,11 +102,7 @@ def bridge(parts: Question, ends: Ends) -> Foot:
     supports = [Sliding("xi2=0", None if isinstance(ends[0], Plane) else ends[0])]
     supports.append(Sliding("xi2=1", ends[1]))
     surface = start.moved(scale.to_world(start.points))
-    # it may give way sideways, so that no smaller model than half tells whether it is stable
-    sector = sector_of(mesh, parts.bond)
-    if mesh.model is None and sector.model != "full":
-        sector = Sector("full" if parts.bond[0] else "half")
-    return Foot(surface, sector, mesh, lines, supports)
+    return Foot(surface, sector_of(mesh, parts.bond), mesh, lines, supports)
 
 
 def _local(scale: Scale, solid: Plane | Sphere) -> Plane | Sphere:
