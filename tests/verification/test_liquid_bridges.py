@@ -50,7 +50,7 @@ def agrees(found, witness):
 
 
 @pytest.mark.parametrize(
-    "number", [*range(8), *(pytest.param(k, marks=pytest.mark.slow) for k in range(8, 40))]
+    "number", [*range(6), *(pytest.param(k, marks=pytest.mark.slow) for k in range(6, 40))]
 )
 def test_forces_and_pressures_between_any_two_solids(number):
     *asked, witness = member(number)
@@ -82,7 +82,9 @@ def limit():
     return limit_of_stability((1.0, 1.0), (60.0, 60.0), (0.5, 0.8), 0.1)
 
 
-@pytest.mark.parametrize("gap", [0.698, 0.74, pytest.param(0.9, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "gap", [0.698, *(pytest.param(gap, marks=pytest.mark.slow) for gap in (0.74, 0.9))]
+)
 def test_loss_of_stability_is_bracketed(gap):
     """Of the motion that is odd about the middle: symmetric bridges exist up to a gap of 0.817."""
     found = iga.solve(scene((1.0, 1.0), (60.0, 60.0), gap, 0.1), on_fail="return")
@@ -94,6 +96,7 @@ def test_loss_of_stability_is_bracketed(gap):
     assert bracket.hi - bracket.lo <= 1e-3 * limit()
 
 
+@pytest.mark.slow
 def test_path_in_the_gap_ends_at_the_loss_of_stability():
     """Of unequal spheres, at a fold."""
     asked = (1.0, 2.0), (45.0, 70.0)
@@ -114,6 +117,6 @@ def test_path_in_the_contact_angle_comes_through():
     def at(angle):
         return scene((1.0, 1.0), (angle, angle), 0.05, 0.02, discretization=ROUND)
 
-    path = iga.trace(at, [80.0, 30.0, 5.0, 0.5], parameter="contact_angle")
+    path = iga.trace(at, [80.0, 20.0, 0.5], parameter="contact_angle")
     for angle, found in zip(path.values, path.solutions, strict=True):
         agrees(found, bridge_between((1.0, 1.0), (angle, angle), 0.05, 0.02))
