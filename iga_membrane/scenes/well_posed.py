@@ -122,7 +122,8 @@ def _check_gaps(scene: Scene) -> None:
 
 
 def check_held(scene: Scene) -> None:
-    """Refuse an edge that nothing holds: a membrane retracts from it.
+    """Refuse an edge that nothing holds, from which a membrane retracts, and a membrane folded from
+    a square whose control points have no directions of their own: normals turn at its corners.
 
     Raises
     ------
@@ -131,6 +132,11 @@ def check_held(scene: Scene) -> None:
     held = [s.edge for s in scene.supports if isinstance(s, (Fixed, Sliding))]
     held += [edge for s in scene.supports if isinstance(s, Joint) for edge in s.edges]
     walls = scene.directions is not None or any(isinstance(s, Symmetry) for s in scene.supports)
+    if scene.surface.space.shared is not None and scene.directions is None:
+        raise SceneError(
+            "directions: missing; the control points of a membrane that is folded from a square "
+            "need directions to move along"
+        )
     loose = [edge for edge in scene.surface.space.open_edges if edge not in held]
     if loose and not walls:
         raise SceneError(

@@ -41,7 +41,7 @@ def sphere(**given):
 
 
 def lattice_at_180(**given):
-    return droplet(iga.SphereLattice(180.0, 0.4, 0.9), 40, hold="xy", **given)
+    return droplet(iga.SphereLattice(180.0, 0.4, 0.9), 56, hold="xy", **given)
 
 
 def lattice(**given):
@@ -177,7 +177,7 @@ def changes(kind):
     if kind not in WEIGHTLESS:
         found |= {
             "heavier": ({"terms": heavier(scene, 1.5)}, {"weight": 1.5}),
-            "heavier without ramp": ({"terms": heavier(scene, 2.0), "ramp": None}, {"weight": 2.0}),
+            "heavier without ramp": ({"terms": heavier(scene, 1.3), "ramp": None}, {"weight": 1.3}),
             "acceleration": ({"acceleration": (0.0, 0.0, -3.0)}, REFUSED),
             "density": ({"liquid_density": 3.0}, REFUSED),
         }
@@ -222,7 +222,9 @@ def check(kind, name):
     assert right != REFUSED, f"{kind}, {name}: solved"
     exact = solved(kind) if right == SAME else solved(kind, **right)
     assert exact.success
-    for measure in ("energy", "pressure", "A_LG", "height"):
+    # the pole may lie in a particle, where a membrane goes on as it likes
+    names = ("energy", "pressure", "A_LG") + ("height",) * (not exact.forces)
+    for measure in names:
         if measure in exact.measures:
             value = exact.measures[measure]
             assert found.measures[measure] == pytest.approx(value, rel=TOLERANCE, abs=TOLERANCE)
