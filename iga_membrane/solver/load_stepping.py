@@ -184,7 +184,11 @@ def load_stepping(
             path.result.status, path.result.message = result.status, result.message
             break
         else:
-            narrow = load - path.last_good <= _sufficient(ramp, path.last_good, load)
+            sufficient = _sufficient(ramp, path.last_good, load)
+            if ramp.value(path.last_good) == 0.0:
+                # no bracket is narrow over its value next to 0
+                sufficient = max(sufficient, smallest)
+            narrow = load - path.last_good <= sufficient
             step = 0.5 * min(step, load - path.last_good)
             lost = narrow and (step < smallest or result.status is None)
             if lost or len(path.steps) > ATTEMPTS * len(stops):

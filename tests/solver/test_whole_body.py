@@ -23,9 +23,9 @@ def mesh(elements, model=None):
     return iga.Discretization(elements=elements, model=model)
 
 
-def film(weight, model=None, radius=1.0):
+def film(weight, model=None, radius=1.0, volume=0.0):
     return iga.liquid_sheet(
-        size=2.0 * radius, boundary="circle", volume=0.0, gravity=1.0, liquid_weight=True,
+        size=2.0 * radius, boundary="circle", volume=volume, gravity=1.0, liquid_weight=True,
         liquid=iga.Liquid(1.0, weight / radius**2), discretization=mesh(6, model),
     )  # fmt: skip
 
@@ -40,6 +40,15 @@ def test_a_film_gives_way_sideways_where_the_closed_form_says(share, radius, mod
     assert found.index == (2 if share > 1.0 else 0)
     stable = iga.Status.CONVERGED_STABLE
     assert found.status is (stable if share < 1.0 else iga.Status.CONVERGED_SADDLE)
+
+
+def test_a_film_that_no_volume_makes_stable_is_not_followed_to_none():
+    """Its ramp is unstable from its first value on, 0, next to which no bracket is narrow."""
+    found = iga.solve(film(1.1 * FILM, "full", volume=1e-3), on_fail="return")
+    assert (found.status, found.index) == (iga.Status.CONVERGED_SADDLE, 2)
+    tried = sorted(step.load for step in found.load_steps)
+    assert 0.0 < tried[1] < 2.0 * iga.SolverOptions().min_load_step
+    assert tried[1] > 0.25 * iga.SolverOptions().min_load_step
 
 
 def test_the_verdict_within_a_model_is_asked_for():
