@@ -26,6 +26,7 @@ def optional(module: str, wanted_by: str, extra: str = "") -> Any:
         If it cannot be loaded; the message names it and what to install.
     """
     try:
+        import_module(module.partition(".")[0])
         return import_module(module)
     except ImportError as error:
         name = module.partition(".")[0]

@@ -93,6 +93,13 @@ def bridge(parts: Question, ends: Ends) -> Foot:
             f'solver.contact_line = "{parts.contact_line}": between two particles it is '
             '"conforming"; leave it out'
         )
+    gap = gap_between(ends)
+    if isinstance(ends[0], Plane) and gap < -1e-9 * ends[1].radius:
+        raise SceneError(
+            f"particle[0].center = {list(ends[1].center)}: {ends[1].radius + gap:g} above the "
+            f"plane, less than its radius {ends[1].radius:g}: it reaches {-gap:.3g} into the "
+            "substrate"
+        )
     mesh, scale, gamma = parts.asked.mesh(), parts.scale, parts.liquid.surface_tension
     low, high = End.of(_local(scale, ends[0]), 1.0), End.of(_local(scale, ends[1]), -1.0)
     arc = least_energy_toroid(low, high, BALL)

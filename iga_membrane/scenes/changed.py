@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ..errors import SceneError
-from ..terms import Gravity, LineTerm, Term
+from ..terms import Gravity, LineTerm, Scale, Term
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -111,7 +111,8 @@ def _check(scene: Scene, before: Mapping[str, Any], changed: Sequence[str]) -> N
             f'kind = "{scene.kind}": a scene of kind "{before["kind"]}" has no measures of '
             "another; build the scene anew"
         )
-    frames = [(s.origin, s.rotation) for s in (scene.units, before["scale"])]
+    asked = scene.scale or Scale(scene.surface.size, 1.0)
+    frames = [(s.origin, s.rotation) for s in (asked, before["scale"])]
     if "scale" in changed and scene.kind != "membrane" and frames[0] != frames[1]:
         raise SceneError(
             "scale: the frame of this scene is that of its solid; keep origin and rotation"

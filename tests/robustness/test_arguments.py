@@ -203,7 +203,7 @@ GIVEN = {
 }  # fmt: skip
 """Public name to valid arguments."""
 NO_ARGUMENTS = {
-    "AreaTerm", "BodyTerm", "Constraint", "GapTerm", "LineTerm", "Term",  # abstract
+    "AreaTerm", "BodyTerm", "Constraint", "GapTerm", "LineTerm", "Term", "WettingLine",  # abstract
     "Solid",  # a protocol
     "Status",  # an enumeration
     "GeometryError", "OutputError", "SceneError", "SolveError", "StateError",  # carry any message
@@ -263,7 +263,7 @@ WRONG = {
 }
 TAKES = {
     "five, half": """
-        Contact.depth Contact.adhesion Contact.compliance Grading.first
+        Contact.depth Contact.adhesion Contact.compliance Contact.traction Grading.first
         Gravity.density_of_liquid Liquid.surface_tension Liquid.density NormalLineLoad.gamma
         Plane.contact_angle PlaneContactLine.gamma PlaneContactLine.contact_angle Ring.radius
         Scale.length Scale.tension Scene.liquid_density SolverOptions.max_cpu_s
@@ -282,7 +282,7 @@ TAKES = {
     "None": """
         Contact.ring Discretization.degree Discretization.model Kinematics.second Scene.scale
         Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge
-        Scene.free_particles Scene.substrate Sliding.solid Solution.audit Solution.bracket
+        Scene.free_particles Sliding.solid Solution.audit Solution.bracket
         Solution.progress SolverOptions.start SolverOptions.checkpoint Space.pole Space.shared
         Space.leaders Space.ruled Spines.directions Table.second Table.kinds
         TrimmedContactLine.toward
@@ -313,6 +313,7 @@ TAKES = {
     """,
     "text": """
         Centroid.axis Path.parameter Scene.hold Scene.kind Solution.message Symmetry.axis
+        Solution.stability_scope
         animate.path plot_curves.path plot_curves.x plot_phases.path plot_phases.x plot_phases.y
         plot_phases.of plot_section.path plot_side.path sessile_droplet.hold trace.parameter
     """,
@@ -354,7 +355,7 @@ TAKES = {
         Scene.warnings Solution.warnings Study.measures Sweep.parameters
     """,
     "None, text": """
-        Solution.kind plot.path plot_curves.by sweep.out
+        Solution.kind Solution.mode_within plot.path plot_curves.by sweep.out
     """,
     "None, -1, five, half": """
         Spheres.base film_between_rings.pressure liquid_sheet.pressure liquid_sheet.volume
@@ -418,8 +419,8 @@ RIGHT = {
 }
 
 
-SAID_OTHERWISE = {("sessile_droplet", None)}
-"""Without a substrate there is a rule about particles."""
+SAID_OTHERWISE = {("sessile_droplet", None), ("Scene", None)}
+"""Without a substrate there is a rule about particles; of a scene it is not replaced alone."""
 
 
 class Began(Exception):

@@ -41,7 +41,8 @@ def leaning(model):
 
 def with_particle():
     grain = iga.Sphere(contact_angle=90.0, radius=0.3, center=(0.0, 0.0, 1.4))
-    plane, mesh = iga.Plane(contact_angle=120.0), iga.Discretization(elements=20)
+    plane = iga.Plane(contact_angle=120.0)
+    mesh = iga.Discretization(elements=20, model="half")
     return iga.sessile_droplet(
         plane, volume=UNIT_VOLUME, gravity=1.0, particles=[grain], discretization=mesh
     )
@@ -54,8 +55,9 @@ def on_asperities():
 
 
 def on_sphere():
+    ball = replace(BALL, contact_angle=100.0)
     return iga.sessile_droplet(
-        replace(BALL, contact_angle=100.0), volume=UNIT_VOLUME, gravity=0.5, discretization=COARSE
+        ball, volume=UNIT_VOLUME, gravity=0.5, hold="xy", discretization=COARSE
     )
 
 

@@ -47,7 +47,9 @@ ENDS = {
     "STALLED": (lambda: droplet(120, 1.0, elements=8), {"quadrature": 1}),
     "MAX_ITER": (lambda: droplet(150, 20.0, elements=8), {"max_iterations": 2}),
     "LINEAR_SOLVE_FAILED": (
-        lambda: iga.Scene(iga.sheet(1.0, elements=4), [TENSION, iga.Pressure(0.1)], []),
+        lambda: iga.Scene(
+            iga.sheet(1.0, elements=4), [TENSION, iga.Pressure(0.1)], [iga.Symmetry("x")]
+        ),
         {},
     ),
     "NONFINITE": (with_a_point_at_the_centre, {}),

@@ -146,12 +146,16 @@ def on_top(height, *, hold="none", line="auto"):
     )
 
 
-def test_particle_on_top_carries_what_a_line_can_and_then_lets_go():
+def test_particle_on_top_carries_what_a_line_can():
     """P17: up to ``2 pi gamma r cos^2(45 degrees)``; without a line there is no force at all."""
     passed, ended = (iga.solve(on_top(1.9, hold="xy", line=way)) for way in ("auto", "conforming"))
     force = passed.forces[0].contact_line[2]
     assert ended.forces[0].contact_line[2] == pytest.approx(force, rel=1e-5)
     assert 0.95 < -force / (0.2 * np.pi) < 1.0
+
+
+@pytest.mark.slow
+def test_particle_above_what_a_line_can_carry_is_lost():
     lost = iga.solve(on_top(2.0, hold="xy"), on_fail="return")
     assert (lost.status, lost.kind) == (iga.Status.TOPOLOGY_CHANGE, "detached")
     assert not lost.forces[0].contact_line.any()
