@@ -281,6 +281,7 @@ TAKES = {
     """,
     "None": """
         Contact.ring Discretization.degree Discretization.model Kinematics.second Scene.scale
+        Scene.origin
         Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge
         Scene.free_particles Sliding.solid Solution.audit Solution.bracket
         Solution.progress SolverOptions.start SolverOptions.checkpoint Space.pole Space.shared
@@ -306,13 +307,13 @@ TAKES = {
     """,
     "list": """
         Basis.joints Path.values Path.solutions PullOff.displacements PullOff.forces
-        PullOff.solutions Scene.supports Scene.particles SelfCleaning.verdicts Solution.forces
+        PullOff.solutions Scene.supports SelfCleaning.verdicts Solution.forces
         Solution.iterations Solution.load_steps Spines.supports Study.runs Sweep.records
         line_basis.joints load.also periodic_basis.joints refined.new1 refined.new2
         ring_basis.joints sessile_droplet.particles
     """,
     "text": """
-        Centroid.axis Path.parameter Scene.hold Scene.kind Solution.message Symmetry.axis
+        Centroid.axis Path.parameter Solution.message Symmetry.axis
         Solution.stability_scope
         animate.path plot_curves.path plot_curves.x plot_phases.path plot_phases.x plot_phases.y
         plot_phases.of plot_section.path plot_side.path sessile_droplet.hold trace.parameter

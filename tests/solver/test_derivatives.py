@@ -39,7 +39,14 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+KINKED = "cell with a penalty"
+"""Its penalty bends where points touch: roadmap."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name == KINKED)) for name in SCENES],
+)
 def test_all_derivatives_of_the_package_are_right(name):
     scene = SCENES[name]()
     found = iga.check_derivatives(scene)
