@@ -21,6 +21,11 @@ def blas():
     return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
 
 
+@pytest.fixture(autouse=True)
+def _blas():
+    """Here it has the threads that the user asks for."""
+
+
 @pytest.fixture(params=[2, 3])
 def asked(request):
     """What the user has asked for."""

@@ -35,14 +35,14 @@ def test_published_drops_through_the_command_line(case, tmp_path):
 
 FAMILY = [(angle, bond) for bond in (0, 0.05, 0.7, 5, 30, 100)
           for angle in (3, 10, 45, 90, 135, 160, 175, 177, 179)]  # fmt: skip
-QUICK = {30: (3, 90), 100: (90, 179)}
-"""Angles at which heavy droplets are among the default tests."""
+QUICK = {0: (10, 135, 179), 0.05: (3, 177), 0.7: (45, 175), 5: (90, 160), 30: (3, 90), 100: (179,)}
+"""Angles of those among the default tests, by their Bond numbers."""
 
 
 @pytest.mark.parametrize(
     ("angle", "bond"),
     [
-        pytest.param(*one, marks=[] if one[0] in QUICK.get(one[1], one) else [pytest.mark.slow])
+        pytest.param(*one, marks=[] if one[0] in QUICK[one[1]] else [pytest.mark.slow])
         for one in FAMILY
     ],
 )

@@ -22,7 +22,10 @@ def lift(solution):
     return solution.forces[0].effective[2]
 
 
-@pytest.mark.parametrize(("angle", "density", "low"), [(65.0, 1.0, 0.8), (115.0, 0.6, 0.2)])
+@pytest.mark.parametrize(
+    ("angle", "density", "low"),
+    [(65.0, 1.0, 0.8), pytest.param(115.0, 0.6, 0.2, marks=pytest.mark.slow)],
+)
 def test_free_particle_on_sheet_rests_at_root_of_force_curve(angle, density, low):
     free = iga.solve(sheet(angle, density=density, motion="vertical"))
     root = iga.critical_value(lambda h: sheet(angle, h, density=density), lift, low, low + 0.7)
@@ -82,7 +85,7 @@ def test_pull_needs_one_free_particle():
         iga.pull_off(sheet())
 
 
-@pytest.mark.parametrize("boundary", ["circle", "square"])
+@pytest.mark.parametrize("boundary", ["circle", pytest.param("square", marks=pytest.mark.slow)])
 def test_self_cleaning_turns_at_critical_density(boundary):
     def scene(density):
         particle = iga.Sphere(85.0, 1.0, (0.0, 0.0, -1.0), density)
