@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from ..checks import shown
 from ..errors import SceneError
 from ..terms import Gravity, LineTerm, Scale, Term
 
@@ -104,7 +105,8 @@ def _check(scene: Scene, before: Mapping[str, Any], changed: Sequence[str]) -> N
     for name, why in alone.items():
         if name in changed and "terms" not in changed:
             raise SceneError(
-                f"{name}: replaced alone, but {why}; build the scene anew with another {name}"
+                f"{name} = {shown(getattr(scene, name))}: replaced alone, but {why}; "
+                f"build the scene anew with another {name}"
             )
     if "kind" in changed and before["kind"] != "membrane":
         raise SceneError(

@@ -420,8 +420,8 @@ RIGHT = {
 }
 
 
-SAID_OTHERWISE = {("sessile_droplet", None), ("Scene", None)}
-"""Without a substrate there is a rule about particles; of a scene it is not replaced alone."""
+SAID_OTHERWISE = {("sessile_droplet", None)}
+"""Without a substrate there is a rule about particles."""
 
 
 class Began(Exception):
