@@ -158,8 +158,8 @@ def test_a_library_that_is_loaded_inside_is_held_and_given_back_too():
 
 
 def test_a_first_solve_of_a_process_keeps_only_its_own_thread_busy():
-    """With a sparse matrix, for which scipy's BLAS is loaded midway: as any BLAS does, whatever it is
-    loaded for, it starts its threads, and they wait actively for a time before they sleep."""
+    """With a sparse matrix, for which scipy's BLAS is loaded midway: as any BLAS does, whatever it
+    is loaded for, it starts its threads, and they wait actively for a time before they sleep."""
     others, solve = map(float, in_a_process(WORK)[0].split())
     loading = float(in_a_process(LOADING)[0])
     assert others <= 0.1 * solve + 1.5 * loading
