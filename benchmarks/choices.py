@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.dofs import dof_map as rows_module
+from iga_membrane.linalg.bordered import Bordered
 from iga_membrane.reference import drop_on_plane
-from iga_membrane.solver import rows as rows_module
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.linear import Bordered
 from iga_membrane.terms import variations
 from iga_membrane.threads import one_thread
 
@@ -109,7 +109,7 @@ def main() -> None:
         "",
         "Made by `python benchmarks/choices.py`; CPU milliseconds, medians of five, one thread.",
         "",
-        "## Dense or sparse factorization (`solver/linear.py`, `DENSE_LIMIT`)",
+        "## Dense or sparse factorization (`linalg/bordered.py`, `DENSE_LIMIT`)",
         "",
         "Factor and solve the bordered system of the drop at 150 degrees, with one step of "
         "refinement. The sparse one finds its order once, some 5 ms, and loads scipy, about 0.1 s "
@@ -125,7 +125,7 @@ def main() -> None:
         "",
         *numpy_or_compiled(),
         "",
-        "## Gauss points (`solver/functional.py`)",
+        "## Gauss points (`assembly/functional.py`)",
         "",
         "Relative errors of the drop at 150 degrees, Bond number 1. The default is degree + 1 "
         "points along the meridian and max(degree, 3) round the ring.",

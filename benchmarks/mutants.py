@@ -48,22 +48,26 @@ MUTANTS = [
     ("solids/wet_spot.py", "line + 0.5 * self._pressure", "line - 0.5 * self._pressure"),
     ("solids/wet_spot.py", "before & (depth > lowest)", "before & (depth < lowest)"),
     ("terms/edge_gap.py", "n, n, bend, load", "n, n, bend, -load"),
-    ("solver/audit.py", "float(np.linalg.norm(total[:-1])) / size", "0.0 / size"),
-    ("solver/audit.py", "abs(loads.push + sum(others))", "abs(loads.push - sum(others))"),
-    ("solver/audit.py", "pull = -contact.table", "pull = contact.table"),
-    ("solver/audit.py", "return max(0.0, -lowest) / contact.length", "return 0.0 * contact.length"),
-    ("solver/audit.py", "abs(inside - held.target) / held.value", "0.0 * held.value"),
-    ("solver/audit.py", "cosine_error(line, -term.strength / tension)",
+    ("verification/audit.py", "float(np.linalg.norm(total[:-1])) / size", "0.0 / size"),
+    ("verification/audit.py", "abs(loads.push + sum(others))", "abs(loads.push - sum(others))"),
+    ("verification/audit.py", "pull = -contact.table", "pull = contact.table"),
+    (
+        "verification/audit.py",
+        "return max(0.0, -lowest) / contact.length",
+        "return 0.0 * contact.length",
+    ),
+    ("verification/audit.py", "abs(inside - held.target) / held.value", "0.0 * held.value"),
+    ("verification/audit.py", "cosine_error(line, -term.strength / tension)",
      "cosine_error(line, term.strength / tension)"),
-    ("solver/audit.py", "forces.push - forces.line - weight", "forces.push - forces.line"),
-    ("solver/balance.py", "return abs(sum(forces))", "return 0.0 * abs(sum(forces))"),
-    ("solver/trimmed_audit.py", "abs(loads.push + pulls[1])", "0.0 * abs(loads.push)"),
-    ("solver/evidence.py", "not abs(self.value) <= self.limit", "False"),
+    ("verification/audit.py", "forces.push - forces.line - weight", "forces.push - forces.line"),
+    ("verification/balance.py", "return abs(sum(forces))", "return 0.0 * abs(sum(forces))"),
+    ("verification/trimmed_audit.py", "abs(loads.push + pulls[1])", "0.0 * abs(loads.push)"),
+    ("verification/evidence.py", "not abs(self.value) <= self.limit", "False"),
 ]  # fmt: skip
 
 
 def main() -> int:
-    for file in ("terms/gravity.py", "solids/wet_spot.py", "solver/audit.py"):
+    for file in ("terms/gravity.py", "solids/wet_spot.py", "verification/audit.py"):
         assert not _caught_by(file, "", ""), "the tests fail without a fault"
     survived = 0
     for number, (file, old, new) in enumerate(MUTANTS, 1):

@@ -118,7 +118,7 @@ def _compare(angle: float, radius: float, polar: float, place: np.ndarray) -> No
 
 def free() -> None:
     """Ten random directions each; the weightless drop on a sphere is the closed form."""
-    from iga_membrane.scenes.start import drop_on_sphere
+    from iga_membrane.initial.profiles import drop_on_sphere
 
     print("| angle | radius | pressure | A_wet | largest force | CPU s |")
     print("|---|---|---|---|---|---|")

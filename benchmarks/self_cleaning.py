@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 import iga_membrane as iga
-from iga_membrane.analysis.lanes import ProcessLanes
+from iga_membrane.analysis.process_pool import ProcessLanes
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples/self_cleaning_map.py"

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 import iga_membrane as iga
-import iga_membrane.solver.multifrontal  # loads scipy before anything is timed
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.linear import Bordered
-from iga_membrane.solver.newton import NewtonOptions, newton
+import iga_membrane.linalg.multifrontal  # loads scipy before anything is timed
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.linalg.bordered import Bordered
+from iga_membrane.solvers.newton import NewtonOptions, newton
 from iga_membrane.terms import variations
 from iga_membrane.threads import one_thread
 

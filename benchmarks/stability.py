@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.reference import cap_on_plane, drop_on_plane
-from iga_membrane.solver.assembly import Assembly
 from iga_membrane.splines import points_of
 from iga_membrane.surface.ring import axisymmetric, drop_space
 from iga_membrane.threads import one_thread

@@ -5,8 +5,9 @@ Names are loaded on first use, so ``import iga_membrane`` costs next to nothing.
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
+
+from .lazy import part
 
 __version__ = "0.1.0"
 
@@ -22,28 +23,28 @@ _HOME = {
     "surface.ring": ("axisymmetric", "drop_space", "ring_space"),
     "surface.refine": ("elevated", "refined"),
     "surface.exchange": ("from_geomdl", "to_geomdl"),
-    "surface.supports": ("Fixed", "Joint", "Mirror", "Sector", "Sliding", "Symmetry"),
-    "surface.motion": ("Motion", "Spines"),
+    "dofs.boundary_conditions": ("Fixed", "Joint", "Mirror", "Sector", "Sliding", "Symmetry"),
+    "dofs.spines": ("Motion", "Spines"),
     "solids": ("Nearest", "Plane", "Solid", "Sphere", "SphereLattice", "Spheres"),
     "terms": ("Centroid", "GapTerm", "Gravity", "PlaneContactLine", "Pressure", "Scale",
               "SphereContactLine", "Stabilization", "SurfaceTension",
               "Volume"),
-    "scenes.liquid": ("Discretization", "Liquid"),
-    "scenes.scene": ("Scene",),
-    "scenes.droplet": ("sessile_droplet",),
-    "scenes.cell": ("asperity_cell",),
-    "scenes.film": ("film_between_rings",),
-    "scenes.sheet": ("liquid_sheet",),
-    "scenes.whole_membrane": ("WholeMembrane",),
-    "scenes.scene_file": ("load_scene", "read_scene"),
-    "solver.options": ("SolverOptions",),
-    "solver.status": ("Status",),
-    "solver.solution": ("Solution",),
-    "solver.solve": ("solve",),
-    "solver.state": ("load",),
-    "solver.trace": ("Path", "trace"),
-    "solver.contact_line": ("contact_line",),
-    "solver.derivatives": ("Derivatives", "check_derivatives"),
+    "initial.liquid": ("Discretization", "Liquid"),
+    "problems.scene": ("Scene",),
+    "problems.droplet": ("sessile_droplet",),
+    "problems.cell": ("asperity_cell",),
+    "problems.film": ("film_between_rings",),
+    "problems.sheet": ("liquid_sheet",),
+    "problems.osman_sauer": ("WholeMembrane",),
+    "io.scene_file": ("load_scene", "read_scene"),
+    "solvers.options": ("SolverOptions",),
+    "status": ("Status",),
+    "driver.solution": ("Solution",),
+    "driver.solve": ("solve",),
+    "driver.state": ("load",),
+    "driver.trace": ("Path", "trace"),
+    "results.contact_line": ("contact_line",),
+    "verification.derivatives": ("Derivatives", "check_derivatives"),
     "analysis.convergence": ("Study", "convergence_study"),
     "analysis.critical": ("Crossing", "critical_value"),
     "analysis.pull_off": ("PullOff", "pull_off"),
@@ -54,7 +55,7 @@ _HOME = {
     "view.goniometer": ("plot_side",),
     "view.animation": ("animate",),
     "view.diagrams": ("plot_curves", "plot_phases"),
-    "solver.lines": ("contact_lines",),
+    "driver.lines": ("contact_lines",),
     "view.export": ("save",),
 }  # fmt: skip
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
@@ -65,7 +66,7 @@ __all__ = ["__version__", *sorted(_MODULE)]
 def __getattr__(name: str) -> Any:
     if name not in _MODULE:
         raise AttributeError(f"module 'iga_membrane' has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_MODULE[name]}"), name)
+    value = part(_MODULE[name], name)
     globals()[name] = value
     return value
 

@@ -13,8 +13,11 @@ from time import process_time
 from typing import Any, TypeVar
 
 from . import __version__
+from .driver.solution import Solution
+from .driver.solve import solve
 from .errors import GeometryError, OutputError, SceneError, StateError
 from .files import check_folder
+from .io.scene_file import read_scene, read_tables
 from .output_folder import (
     PICTURE,
     RESULT,
@@ -28,10 +31,7 @@ from .output_folder import (
 )
 from .progress import bar, iterations
 from .progress import log as progress_log
-from .scenes.scene_file import read_scene, read_tables
-from .solver.options import SolverOptions
-from .solver.solution import Solution
-from .solver.solve import solve
+from .solvers.options import SolverOptions
 from .view.export import ending_of, save
 
 SOLVED, BAD_SCENE, FAILED, NOT_WRITABLE, INTERRUPTED = 0, 2, 3, 4, 130
@@ -116,14 +116,14 @@ def _start_in(folder: Path, tables: Any) -> Collection[str]:
 
 def _unfinished(folder: Path) -> Collection[str]:
     """Names of the states of a path that has not come to its end."""
-    from .solver.state import holds_path
+    from .driver.state import holds_path
 
     return [name for name in (STATE, STATE_BEFORE) if holds_path(folder / name)]
 
 
 def _sweep(given: argparse.Namespace) -> int:
     from .analysis.sweep import sweep
-    from .scenes.sweep_file import read_sweep
+    from .io.sweep_file import read_sweep
 
     folder = output_folder("--out", given.out)
     file = _read(given.sweep, read_sweep, folder)
@@ -150,7 +150,7 @@ def _info(given: argparse.Namespace) -> int:
     if path.suffix == ".npz":
         _say(_load(path).summary())
         return SOLVED
-    from .solver.result_file import read_result
+    from .driver.result_file import read_result
 
     record = read_result(path)
     lines = [f"{record['status']}: {record.get('message')}"]
@@ -211,7 +211,7 @@ def _state_of(path: Path) -> Path:
 
 
 def _load(path: Path) -> Solution:
-    from .solver.state import load
+    from .driver.state import load
 
     return load(path)
 

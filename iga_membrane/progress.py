@@ -11,7 +11,7 @@ from math import log10
 
 log = logging.getLogger("iga_membrane.progress")
 """Its lines have the level INFO, so they are shown only where logging is set up to show them."""
-iterations = logging.getLogger("iga_membrane.solver.newton")
+iterations = logging.getLogger("iga_membrane.solvers.newton")
 """A line of level DEBUG for every Newton iteration: phase, number, relative residual."""
 CONVERGED = 1e-13
 """Relative residual of a solve that has converged, from which the bar's estimate counts."""

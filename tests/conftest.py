@@ -3,7 +3,7 @@
 import pytest
 from helpers import rounded_by
 
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.threads import one_thread
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 UNIT_VOLUME = 4.0 * np.pi / 3.0

@@ -23,7 +23,7 @@ FLOORS = {
     "view": 6, "analysis": 6,
     "cli": 7, "__main__": 8,
 }  # fmt: skip
-DOORS = {("solver/solution.py", "view")}
+DOORS = {("driver/solution.py", "view")}
 FILES = sorted(ROOT.rglob("*.py"))
 
 

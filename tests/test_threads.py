@@ -11,8 +11,8 @@ from helpers import droplet
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.deadline import OutOfTime, check_time, until
-from iga_membrane.solver.assembly import Assembly
 from iga_membrane.threads import one_thread
 
 

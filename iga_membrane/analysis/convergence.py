@@ -16,19 +16,19 @@ import numpy as np
 
 from ..arguments import checked
 from ..checks import anything, choice, integer, items, number, record
+from ..dofs.boundary_conditions import Model
+from ..driver.solution import Solution
+from ..driver.solve import solve
 from ..errors import OutputError, SceneError
 from ..fields import FIELDS
 from ..files import write_whole
+from ..initial.liquid import Discretization, space_name
 from ..optional import optional
 from ..own import called
-from ..scenes.liquid import Discretization, space_name
-from ..scenes.scene import Scene
-from ..solver.options import SolverOptions
-from ..solver.solution import Solution
-from ..solver.solve import solve
-from ..solver.status import Status
+from ..problems.scene import Scene
+from ..solvers.options import SolverOptions
 from ..splines import BasisOf
-from ..surface.supports import Model
+from ..status import Status
 
 COSTS = {"unknowns": "unknowns", "cpu": "CPU seconds", "memory": "peak memory, MB"}
 

@@ -10,12 +10,12 @@ from scipy.optimize import brentq
 
 from ..arguments import checked
 from ..checks import name_of, number, record
+from ..driver.solution import Solution
+from ..driver.solve import solve
 from ..errors import SceneError
 from ..own import called
-from ..scenes.scene import Scene
-from ..solver.options import SolverOptions
-from ..solver.solution import Solution
-from ..solver.solve import solve
+from ..problems.scene import Scene
+from ..solvers.options import SolverOptions
 
 
 @dataclass(frozen=True)

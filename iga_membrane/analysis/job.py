@@ -10,15 +10,15 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any
 
 from .. import __version__
+from ..driver.result_file import result
+from ..driver.solve import solve
 from ..errors import SceneError
+from ..problems.scene import Scene
 from ..records import digest
-from ..scenes.scene import Scene
-from ..solver.options import SolverOptions
-from ..solver.result_file import result
-from ..solver.solve import solve
+from ..solvers.options import SolverOptions
 from ..threads import one_thread
-from .lanes import UnusableWorkersError
 from .portable import Portable, identity
+from .process_pool import UnusableWorkersError
 from .record_store import LAPSE, Record, RecordStore
 
 log = logging.getLogger("iga_membrane")

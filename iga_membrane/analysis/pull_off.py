@@ -12,14 +12,14 @@ from scipy.optimize import minimize_scalar
 
 from ..arguments import checked
 from ..checks import items, real, words
+from ..driver.free_particles import LOST, Places
+from ..driver.solution import Solution
+from ..driver.solve import solve
 from ..errors import SceneError, SolveError
-from ..scenes.scene import Scene
+from ..problems.scene import Scene
 from ..solids import Sphere
-from ..solver.load_stepping import Bracket
-from ..solver.moving import LOST, Places
-from ..solver.options import SolverOptions
-from ..solver.solution import Solution
-from ..solver.solve import solve
+from ..solvers.load_stepping import Bracket
+from ..solvers.options import SolverOptions
 
 FIRST, LONGEST = 0.05, 0.2
 """Displacement in radii of the first step, and of any."""

@@ -10,13 +10,13 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import NOT_NEGATIVE, real, words
+from ..driver.solution import Solution
+from ..driver.solve import solve
 from ..errors import SceneError
-from ..scenes.scene import Scene
+from ..problems.scene import Scene
+from ..results.forces import ParticleForces
 from ..solids import Plane, SphereLattice, Spheres
-from ..solver.forces import ParticleForces
-from ..solver.options import SolverOptions
-from ..solver.solution import Solution
-from ..solver.solve import solve
+from ..solvers.options import SolverOptions
 
 ROUNDING = 1e-9
 """Force over weight and line force that counts as none."""

@@ -19,17 +19,17 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import POSITIVE, integer, number
 from ..checks import record as check_record
+from ..driver.result_file import flat
 from ..errors import OutputError, SceneError
 from ..files import write_whole
 from ..output_folder import output_folder
+from ..problems.scene import Scene
 from ..progress import bar
-from ..scenes.scene import Scene
-from ..solver.options import SolverOptions
-from ..solver.result_file import flat
+from ..solvers.options import SolverOptions
 from ..tables import column, csv_text, dataframe, dataset, names_of
 from .job import Job, fingerprint, question_of
-from .lanes import ProcessLanes, UnusableWorkersError, processors
 from .portable import Portable, identity
+from .process_pool import ProcessLanes, UnusableWorkersError, processors
 from .record_store import Record, RecordStore
 
 log = logging.getLogger("iga_membrane")

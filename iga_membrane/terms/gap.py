@@ -13,8 +13,10 @@ from ..arrays import Array
 from ..own import answer_of, called, note_bad
 from ..solids import Nearest, Solid
 from ..splines import Table
-from . import variations as vary
 from .term import BodyDensity, LocalSolid, Scale, Term
+from .variations import ElementPoints, cross
+from .variations import forces as area_forces
+from .variations import hessian as area_hessian
 
 
 class GapTerm(Term):
@@ -111,21 +113,21 @@ class LocalGap(Term):
         return Law(f * per, slope * (unit * per), curvature * (unit**2 * per), found)
 
 
-def energy(table: Table, at: vary.ElementPoints, law: Law) -> float:
+def energy(table: Table, at: ElementPoints, law: Law) -> float:
     """``int f dA``"""
     return float((law.value * at.area * table.weights).sum())
 
 
-def forces(table: Table, at: vary.ElementPoints, law: Law) -> Array:
+def forces(table: Table, at: ElementPoints, law: Law) -> Array:
     """(elements, local, 3) derivative by the local control points, ``int f' n . u + f a^b . u_,b
     dA`` with the gap's gradient n."""
-    area = vary.forces(table.weighted(law.value), at, 1.0, BodyDensity())
+    area = area_forces(table.weighted(law.value), at, 1.0, BodyDensity())
     push = law.pull * (at.area * table.weights)[..., None]
     return np.asarray(area + table.values.transpose(0, 2, 1) @ push)
 
 
 def hessian(
-    table: Table, at: vary.ElementPoints, law: Law, directions: Array, kernels: Any = None
+    table: Table, at: ElementPoints, law: Law, directions: Array, kernels: Any = None
 ) -> Array:
     """(elements, local, local) second derivative along given directions.
 
@@ -137,8 +139,8 @@ def hessian(
     """
     along = directions.transpose(0, 2, 1)
     normal = at.c / at.area[..., None]
-    stretch = table.d1 * (vary.cross(at.a2, normal) @ along)
-    stretch += table.d2 * (vary.cross(normal, at.a1) @ along)
+    stretch = table.d1 * (cross(at.a2, normal) @ along)
+    stretch += table.d2 * (cross(normal, at.a1) @ along)
     u = table.values * (law.at.normal @ along)
     w = table.weights
     wj = w * at.area
@@ -151,5 +153,5 @@ def hessian(
     if law.at.ridge is not None:
         across = table.values * (law.at.ridge @ along)
         blocks += across.transpose(0, 2, 1) @ (across * (wj * law.slope)[..., None])
-    area = vary.hessian(table.weighted(law.value), at, 1.0, BodyDensity(), directions, kernels)
+    area = area_hessian(table.weighted(law.value), at, 1.0, BodyDensity(), directions, kernels)
     return np.asarray(blocks + area)

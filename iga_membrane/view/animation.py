@@ -12,12 +12,12 @@ import numpy as np
 
 from ..arguments import checked
 from ..checks import POSITIVE
+from ..driver.solution import Solution
+from ..driver.trace import Path as Walk
 from ..errors import OutputError, SceneError
 from ..files import check_folder, write_whole
 from ..optional import optional
 from ..output_folder import FRAME, remove
-from ..solver.solution import Solution
-from ..solver.trace import Path as Walk
 from .fields import field
 from .picture import extent, plot
 

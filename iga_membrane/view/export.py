@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..arguments import checked
+from ..driver.solution import Solution
 from ..errors import OutputError
 from ..files import write_whole
-from ..solver.solution import Solution
 
 
 @checked()
@@ -51,13 +51,13 @@ Writer = Callable[[str], object]
 
 
 def _result(solution: Solution) -> Writer:
-    from ..solver.result_file import result_text
+    from ..driver.result_file import result_text
 
     return _text(result_text(solution))
 
 
 def _state(solution: Solution) -> Writer:
-    from ..solver.state import write_state
+    from ..driver.state import write_state
 
     return lambda file: write_state(Path(file), solution)
 

@@ -11,7 +11,7 @@ from ..solids import Solid
 from ..surface.kinematics import Kinematics
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 FIELDS = ("mean_curvature", "pressure", "gap", "residual")
 """Names of the fields."""

@@ -10,12 +10,12 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
+from ..driver.lines import contact_lines
+from ..driver.solution import Solution
 from ..errors import SceneError
+from ..results.apparent import profile
+from ..results.measures import own_asperity
 from ..solids import Plane, Sphere, SphereLattice, Spheres
-from ..solver.apparent import profile
-from ..solver.lines import contact_lines
-from ..solver.measures import own_asperity
-from ..solver.solution import Solution
 from .fields import solids
 from .figure import figure, write_figure
 from .mesh import RESOLUTION, membrane, outside, trimming_solid
@@ -45,7 +45,7 @@ def plot_side(
     -------
     The angles left and right, in degrees: where the contact line reaches farthest; on asperities
     where the axisymmetric profile of the droplet's height and pressure meets the level of their
-    tops (:func:`iga_membrane.solver.apparent.apparent_angle`).
+    tops (:func:`iga_membrane.results.apparent.apparent_angle`).
 
     Raises
     ------

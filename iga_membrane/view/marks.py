@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
+from ..driver.lines import LineOnSolid, contact_lines
 from ..solids import Sphere
-from ..solver.lines import LineOnSolid, contact_lines
 from ..terms import TrimmedContactLine
 from .fields import solids
 from .mesh import trimming_solid
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 LINE_COLOR, WET_COLOR, PULL_COLOR = "#cc0000", "#8e2a1c", "#1155cc"
 FORCES = {"F_e": "black", "F_CL": PULL_COLOR, "F_H + F_B": "#2a9d8f", "F_G": "#7f7f7f"}

@@ -15,7 +15,7 @@ from .drawing import pyvista
 from .fields import field
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 RESOLUTION = partial(integer, least=2, most=4097)
 """Rule of the number of points along a direction of a patch that is drawn."""

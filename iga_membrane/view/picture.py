@@ -23,8 +23,8 @@ from ..checks import (
     vector,
     words,
 )
+from ..driver.solution import Solution
 from ..errors import SceneError
-from ..solver.solution import Solution
 from .drawing import check_drawing, pyvista, trial
 from .marks import add_forces, add_lines
 from .mesh import RESOLUTION, membrane, outside, trimming_solid

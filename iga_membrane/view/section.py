@@ -9,9 +9,9 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
+from ..driver.solution import Solution
 from ..reference import profile_on_plane
 from ..solids import Plane, Sphere, SphereLattice, Spheres
-from ..solver.solution import Solution
 from .fields import solids
 from .figure import figure, write_figure
 from .mesh import RESOLUTION, membrane, outside, trimming_solid

@@ -13,7 +13,7 @@ from ..solids import Plane
 from .mesh import membrane, outside, trimming_solid
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 
 def triangles(solution: Solution, resolution: int = 129) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 DRY, WET = "#d9d2c5", "#cc4125"
 """Colours of solids, and of asperities that carry a part of the droplet."""

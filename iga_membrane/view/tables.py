@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..driver.lines import contact_lines
 from ..optional import optional
 from ..solids import Sphere
-from ..solver.lines import contact_lines
 from ..tables import Row
 from .fields import FIELDS, field
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 
 def line_rows(solution: Solution) -> list[Row]:

@@ -15,7 +15,7 @@ from .drawing import pyvista
 from .fields import FIELDS, field
 
 if TYPE_CHECKING:
-    from ..solver.solution import Solution
+    from ..driver.solution import Solution
 
 
 BEZIER_QUADRILATERAL = 77

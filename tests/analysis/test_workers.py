@@ -13,12 +13,8 @@ import pytest
 from analysis.sweep_scenes import Deadly, drop
 
 import iga_membrane as iga
-from iga_membrane.analysis.lanes import (
-    ProcessLanes,
-    WorkerLostError,
-    processors,
-)
 from iga_membrane.analysis.portable import identity
+from iga_membrane.analysis.process_pool import ProcessLanes, WorkerLostError, processors
 from iga_membrane.analysis.record_store import RecordStore
 
 PATHS = [str(Path(iga.__file__).parents[1]), str(Path(__file__).parents[1])]
@@ -64,7 +60,7 @@ from pathlib import Path
 for module, name in ((os, "sched_getaffinity"), (os, "fork"), (signal, "SIGKILL")):
     delattr(module, name)
 import iga_membrane as iga
-from iga_membrane.analysis.lanes import processors
+from iga_membrane.analysis.process_pool import processors
 assert processors() == os.cpu_count()
 volume = 4.19
 def made_at_a_prompt(angle, bond):

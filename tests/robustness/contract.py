@@ -6,7 +6,7 @@ import numpy as np
 from helpers import droplet
 
 import iga_membrane as iga
-from iga_membrane.solver.result_file import result
+from iga_membrane.driver.result_file import result
 
 
 def finite(value):

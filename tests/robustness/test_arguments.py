@@ -211,7 +211,7 @@ NO_ARGUMENTS = {
 
 
 def bracket():
-    from iga_membrane.solver.load_stepping import Bracket
+    from iga_membrane.solvers.load_stepping import Bracket
 
     return Bracket("p", 0.0, 1.0, 0, 1)
 
@@ -437,7 +437,7 @@ def _no_work(monkeypatch, tmp_path):
 
     drop()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("iga_membrane.solver.assembly.Assembly.__init__", begun)
+    monkeypatch.setattr("iga_membrane.assembly.lagrangian.Assembly.__init__", begun)
     monkeypatch.setattr("iga_membrane.analysis.sweep._running", begun)
     for place in ("picture.pyvista", "picture.trial", "section.figure", "goniometer.figure",
                   "diagrams.figure", "animation.extent"):  # fmt: skip

@@ -7,10 +7,10 @@ import pytest
 from helpers import UNIT_VOLUME, droplet
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.audit import audit
-from iga_membrane.solver.newton import NewtonOptions, newton
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.solvers.newton import NewtonOptions, newton
 from iga_membrane.terms import BodyDensity
+from iga_membrane.verification.audit import audit
 
 
 class State:

@@ -13,7 +13,7 @@ from helpers import droplet
 import iga_membrane as iga
 from iga_membrane.checks import contact_angle
 from iga_membrane.fields import FIELDS as RULES
-from iga_membrane.scenes.scene_keys import KEYS
+from iga_membrane.io.scene_keys import KEYS
 
 DROPLET = """
 scene = "sessile_droplet"

@@ -13,8 +13,8 @@ import pytest
 from helpers import droplet, droplet_file, path_file
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.cli import main
-from iga_membrane.solver.assembly import Assembly
 
 
 def angles(options=None, on_fail="raise", report=lambda load: None):
@@ -62,7 +62,7 @@ def test_an_interrupted_path_goes_on_to_the_same_end(tmp_path, count):
 
 
 def test_only_converged_steps_are_kept(tmp_path, monkeypatch):
-    from iga_membrane.solver import load_stepping as module
+    from iga_membrane.solvers import load_stepping as module
 
     options = iga.SolverOptions(checkpoint=tmp_path / "state.npz")
     newton, calls = module.newton, []
@@ -77,7 +77,7 @@ def test_only_converged_steps_are_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "newton", failing)
     written = []
     monkeypatch.setattr(
-        "iga_membrane.solver.state.write_state",
+        "iga_membrane.driver.state.write_state",
         lambda path, state, keep: written.append((state.load, state.result.status)),
     )
     angles(options)
@@ -155,7 +155,7 @@ def test_a_checkpoint_of_another_version_is_refused(tmp_path, monkeypatch):
     options = iga.SolverOptions(checkpoint=state)
     with pytest.raises(Killed):
         angles(options, report=killed_after(2))
-    monkeypatch.setattr("iga_membrane.solver.state.__version__", "999")
+    monkeypatch.setattr("iga_membrane.driver.state.__version__", "999")
     with pytest.raises(iga.StateError, match="not the state of this path"):
         angles(replace(options, start=state))
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import iga_membrane as iga
-from iga_membrane.solver import conclude
-from iga_membrane.solver.crossing import crossing
+from iga_membrane.driver import evaluate as conclude
+from iga_membrane.verification.self_intersection import crossing
 
 
 def folded(gap, c, bulge, shear):

@@ -8,14 +8,14 @@ import pytest
 from helpers import UNIT_VOLUME, droplet
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.audit import audit
-from iga_membrane.solver.conclude import Outcome, conclude
-from iga_membrane.solver.evidence import Audit
-from iga_membrane.solver.predictor import first, settings_of
-from iga_membrane.solver.result_file import result
-from iga_membrane.solver.trimmed_audit import trimmed_audit
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.driver.evaluate import Outcome, conclude
+from iga_membrane.driver.result_file import result
+from iga_membrane.solvers.predictor import first, settings_of
 from iga_membrane.terms import BodyDensity
+from iga_membrane.verification.audit import audit
+from iga_membrane.verification.evidence import Audit
+from iga_membrane.verification.trimmed_audit import trimmed_audit
 
 COARSE = iga.Discretization(elements=16)
 BALL = iga.Sphere(contact_angle=140.0, radius=1.0, center=(0.0, 0.0, -1.0))

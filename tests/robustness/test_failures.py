@@ -12,14 +12,14 @@ from helpers import UNIT_VOLUME, droplet, droplet_file, particle_sheet, path_fil
 from robustness.contract import check_contract, finite, unheld_droplet
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.cli import main
 from iga_membrane.deadline import OutOfTime
-from iga_membrane.solver import conclude as conclude_module
-from iga_membrane.solver import newton as newton_module
-from iga_membrane.solver import solve as solve_module
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.result_file import result
-from iga_membrane.solver.status import REMEDY
+from iga_membrane.driver import evaluate as conclude_module
+from iga_membrane.driver import solve as solve_module
+from iga_membrane.driver.result_file import result
+from iga_membrane.solvers import newton as newton_module
+from iga_membrane.status import REMEDY
 
 HARD = {
     "drop": lambda: droplet(30, 100.0, elements=8),
@@ -151,7 +151,7 @@ def test_a_start_on_a_saddle_is_not_a_success():
 
 def test_contact_that_flips_at_every_step_ends(monkeypatch):
     """N7: half of the contact points are let go and taken back in turn."""
-    from iga_membrane.solver.contact import ContactSet
+    from iga_membrane.contact.obstacle import ContactSet
 
     original, turn = ContactSet.touch, []
 
@@ -295,7 +295,7 @@ STRUCK = """
 import os, signal, sys, time
 from iga_membrane import cli, files
 from iga_membrane.solver import newton
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run in background
 place, scene, out = sys.argv[1:]

@@ -15,10 +15,10 @@ from robustness.extreme_scenes import KINDS, extreme_scenes, score
 import iga_membrane as iga
 from iga_membrane.analysis.job import solve_point
 from iga_membrane.analysis.portable import Portable
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.reference import drop_on_plane
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.newton import FLOOR, NewtonOptions, newton
-from iga_membrane.solver.stability import stability_of
+from iga_membrane.solvers.newton import FLOOR, NewtonOptions, newton
+from iga_membrane.solvers.stability import stability_of
 from iga_membrane.splines import points_of
 from iga_membrane.terms import variations
 
@@ -74,7 +74,7 @@ def test_contact_forces_only_push():
 @pytest.mark.parametrize("angle", [30, 120, 170])
 def test_accepted_steps_never_raise_the_energy(angle, monkeypatch):
     """Q17: the merit function falls with every step; at fixed volume it is the energy."""
-    from iga_membrane.solver import newton as module
+    from iga_membrane.solvers import newton as module
 
     search, begin, after = module._search, [], []
 

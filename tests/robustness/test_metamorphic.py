@@ -9,9 +9,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import iga_membrane as iga
-from iga_membrane.solver.farthest import highest
-from iga_membrane.solver.lines import contact_lines
-from iga_membrane.solver.result_file import result
+from iga_membrane.driver.lines import contact_lines
+from iga_membrane.driver.result_file import result
+from iga_membrane.results.farthest import highest
 
 VOLUME = 4.0 * np.pi / 3.0
 

@@ -5,12 +5,12 @@ import pytest
 from helpers import UNIT_VOLUME, droplet, pinned_cap, solved
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.driver.acceptance import defect
 from iga_membrane.reference import drop_on_plane
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.audit import audit
-from iga_membrane.solver.evidence import TOLERANCE, Audit
-from iga_membrane.solver.judge import defect
 from iga_membrane.splines import points_of
+from iga_membrane.verification.audit import audit
+from iga_membrane.verification.evidence import TOLERANCE, Audit
 
 TENSION = iga.SurfaceTension(1.0)
 

@@ -7,8 +7,8 @@ import pytest
 from helpers import UNIT_VOLUME, particle_sheet
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.newton import NewtonOptions, newton
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.solvers.newton import NewtonOptions, newton
 
 pytestmark = pytest.mark.slow
 
@@ -152,7 +152,7 @@ def test_newton_converges_at_its_order(seed):
 @pytest.mark.parametrize("seed", SEEDS)
 def test_accepted_steps_never_raise_the_energy(seed, monkeypatch):
     """Q17: at the volume asked for, once it is filled."""
-    from iga_membrane.solver import newton as module
+    from iga_membrane.solvers import newton as module
 
     search, fallen = module._search, []
 

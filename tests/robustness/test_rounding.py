@@ -7,7 +7,7 @@ import pytest
 from helpers import droplet, rounded_by
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 LATTICE = iga.SphereLattice(180.0, radius=0.1, spacing=0.4)
 

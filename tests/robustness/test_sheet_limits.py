@@ -6,8 +6,8 @@ import pytest
 from helpers import particle_sheet
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.newton import NewtonOptions, newton
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.solvers.newton import NewtonOptions, newton
 from iga_membrane.splines import points_of
 
 

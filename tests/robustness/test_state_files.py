@@ -23,9 +23,9 @@ import iga_membrane as iga
 from iga_membrane import files
 from iga_membrane.analysis.record_store import RecordStore
 from iga_membrane.cli import main
+from iga_membrane.driver.result_file import read_result
+from iga_membrane.io.sweep_file import load_sweep
 from iga_membrane.records import digest
-from iga_membrane.scenes.sweep_file import load_sweep
-from iga_membrane.solver.result_file import read_result
 from iga_membrane.terms import BodyDensity, BodyTerm
 
 PACKAGE = Path(iga.__file__).parent
@@ -411,7 +411,7 @@ def test_no_file_content_is_ever_executed():
 
 def test_an_output_folder_is_never_named_by_the_scene_file():
     """X4: a scene file has no field that names an output."""
-    from iga_membrane.scenes.scene_keys import KEYS
+    from iga_membrane.io.scene_keys import KEYS
 
     assert not {"out", "output", "path", "file", "name"} & {k for t in KEYS if t for k in KEYS[t]}
 

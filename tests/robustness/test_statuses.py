@@ -8,7 +8,7 @@ from helpers import UNIT_VOLUME, droplet, particle_sheet, pinned_cap
 from robustness.contract import check_contract, critical_film
 
 import iga_membrane as iga
-from iga_membrane.solver import conclude
+from iga_membrane.driver import evaluate as conclude
 from iga_membrane.splines import points_of
 
 TENSION = iga.SurfaceTension(1.0)

@@ -10,7 +10,7 @@ from helpers import UNIT_VOLUME, pinned_cap
 from scipy.linalg import eigh, null_space
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 TENSION = iga.SurfaceTension(1.0)
 

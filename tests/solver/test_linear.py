@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from iga_membrane.solver.inverse_root import SingularMatrix
-from iga_membrane.solver.linear import Bordered, Matrix, SparsePattern
+from iga_membrane.linalg.bordered import Bordered, Matrix, SparsePattern
+from iga_membrane.linalg.inverse_root import SingularMatrix
 
 
 def chain(size, negative, dense):

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array
 
-from iga_membrane.solver.inverse_root import SingularMatrix
-from iga_membrane.solver.multifrontal import Elimination, Multifrontal
+from iga_membrane.linalg.inverse_root import SingularMatrix
+from iga_membrane.linalg.multifrontal import Elimination, Multifrontal
 
 
 def patch(side, per_point, seed, lift):

@@ -6,8 +6,8 @@ from helpers import UNIT_VOLUME
 from taylor import remainder_slopes
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.point_supports import PointSupports
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.contact.subgrid import PointSupports
 
 
 def scene_of(model, offset=(0.0, 0.0), spacing=0.07, angle=180.0):

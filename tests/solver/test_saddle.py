@@ -6,7 +6,7 @@ from helpers import UNIT_VOLUME, droplet, pinned_cap
 from scipy.optimize import brentq
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 FOLLOW = iga.SolverOptions(follow_instability=True)
 

@@ -5,9 +5,9 @@ import pytest
 from helpers import UNIT_VOLUME, droplet, pinned_cap, solved
 
 import iga_membrane as iga
-from iga_membrane.solver import newton as newton_module
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.newton import NewtonOptions
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.solvers import newton as newton_module
+from iga_membrane.solvers.newton import NewtonOptions
 
 TENSION = iga.SurfaceTension(1.0)
 
@@ -187,7 +187,7 @@ def test_load_stepping_goes_round_a_failed_direct_solve(monkeypatch):
             result.status, result.message = iga.Status.STALLED, "made to fail"
         return result
 
-    monkeypatch.setattr("iga_membrane.solver.predictor.newton", fails_first)
+    monkeypatch.setattr("iga_membrane.solvers.predictor.newton", fails_first)
     seen = []
     solution = iga.solve(droplet(120, 3.0, elements=8), report=seen.append)
     assert solution.success
@@ -199,12 +199,12 @@ def test_load_stepping_goes_round_a_failed_direct_solve(monkeypatch):
 
 def test_an_independent_audit_finds_a_state_that_is_no_equilibrium(monkeypatch):
     """A solver that stops at its start must not pass."""
-    from iga_membrane.solver.newton import NewtonResult
+    from iga_membrane.solvers.newton import NewtonResult
 
     def idle(assembly, surface, multipliers, grading, options):
         return NewtonResult(surface, np.array([2.0]))
 
-    monkeypatch.setattr("iga_membrane.solver.predictor.newton", idle)
+    monkeypatch.setattr("iga_membrane.solvers.predictor.newton", idle)
     solution = iga.solve(droplet(120, 3.0, elements=8), on_fail="return")
     assert not solution.success
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import iga_membrane as iga
-from iga_membrane.solver.contact_line import ContactLine
-from iga_membrane.solver.wetted_cap import WettedCap
+from iga_membrane.results.contact_line import ContactLine
+from iga_membrane.results.wetted_cap import WettedCap
 from iga_membrane.terms import BodyDensity
 
 SPHERE = iga.Sphere(90.0, 0.7, (0.3, -0.2, 0.5))

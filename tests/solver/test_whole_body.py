@@ -9,11 +9,11 @@ from scipy.linalg import eigh, null_space
 from scipy.special import jn_zeros
 
 import iga_membrane as iga
-from iga_membrane.scenes.liquid import MODELS
-from iga_membrane.solver.assembly import Assembly
-from iga_membrane.solver.newton import NewtonOptions, newton
-from iga_membrane.solver.second_variation import SecondVariation
-from iga_membrane.surface.supports import Sector
+from iga_membrane.assembly.lagrangian import Assembly
+from iga_membrane.dofs.boundary_conditions import Sector
+from iga_membrane.initial.liquid import MODELS
+from iga_membrane.solvers.newton import NewtonOptions, newton
+from iga_membrane.solvers.second_variation import SecondVariation
 
 FILM = float(jn_zeros(1, 1)[0]) ** 2
 """rho g R^2 / gamma beyond which a flat round film of prescribed volume gives way sideways."""

@@ -5,8 +5,10 @@ import pytest
 from helpers import slopes
 from scipy.integrate import solve_ivp
 
-from iga_membrane.scenes.asperities import whole_skin
-from iga_membrane.scenes.pattern import Pattern
+from iga_membrane.dofs.boundary_conditions import Sector
+from iga_membrane.dofs.symmetry import sector_table
+from iga_membrane.initial.closed_droplet import whole_skin
+from iga_membrane.initial.resolution import Pattern
 from iga_membrane.splines import net_of, pillow_space
 from iga_membrane.surface.closed import (
     QUARTER,
@@ -16,8 +18,6 @@ from iga_membrane.surface.closed import (
     inverse_lemniscate_sine,
     lemniscate_sine,
 )
-from iga_membrane.surface.sector import sector_table
-from iga_membrane.surface.supports import Sector
 from iga_membrane.terms import variations as vary
 
 MODELS = ("full", "half", "quarter", "eighth")

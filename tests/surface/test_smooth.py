@@ -8,7 +8,7 @@ import pytest
 from helpers import UNIT_VOLUME
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 DISTANCES = (1e-3, 1e-5, 1e-7)
 MODELS = ("full", "half", "quarter", "eighth")

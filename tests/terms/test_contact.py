@@ -6,7 +6,7 @@ from helpers import UNIT_VOLUME, example
 from taylor import lagrangian_slopes, remainder_slopes
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.terms import Contact
 
 PENALTY, HARD = 50.0, 1e4

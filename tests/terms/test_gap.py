@@ -8,7 +8,7 @@ from helpers import UNIT_VOLUME, example, pinned_cap
 from taylor import lagrangian_slopes
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 
 TENSION = iga.SurfaceTension(1.3)
 

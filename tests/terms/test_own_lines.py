@@ -144,7 +144,7 @@ class Wrong(LineTension):
 
 def test_the_audit_finds_forces_that_are_not_those_of_the_energy(monkeypatch):
     """Independently of the check before the solve."""
-    from iga_membrane.solver import solve as module
+    from iga_membrane.driver import solve as module
 
     monkeypatch.setattr(module, "check_own_terms", lambda *given: None)
     scene = droplet()

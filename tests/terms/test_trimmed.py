@@ -5,7 +5,7 @@ import pytest
 from taylor import lagrangian_slopes
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.terms import BodyDensity
 
 
@@ -61,7 +61,7 @@ SCENES = {
 
 @pytest.mark.parametrize("name", SCENES)
 def test_energy_and_volume_have_exact_derivatives(name, monkeypatch):
-    monkeypatch.setattr("iga_membrane.solver.trim.EXTRA", 22)  # the integrals, not their rule
+    monkeypatch.setattr("iga_membrane.contact.unfitted.EXTRA", 22)  # the integrals, not their rule
     scene, sunk = SCENES[name]()
     assembly, surface, motion, random = state(scene, 1, sunk)
     multipliers = np.zeros(assembly.multipliers)  # the last holds a shift's gauge, not an energy
@@ -81,7 +81,7 @@ def test_derivatives_without_the_ends_of_graphs_are_wrong(monkeypatch):
     along[assembly.trim.ties.idle] = 0.0
     whole = along @ (assembly.system(surface, motion.directions, np.zeros(0)).matrix @ along)
     monkeypatch.setattr(
-        "iga_membrane.solver.inside_lines.end_hessian",
+        "iga_membrane.contact.unfitted_lines.end_hessian",
         lambda at, *rest: np.zeros((len(at.table.functions), *[at.table.functions.shape[1]] * 2)),
     )
     part = along @ (assembly.system(surface, motion.directions, np.zeros(0)).matrix @ along)
@@ -90,7 +90,7 @@ def test_derivatives_without_the_ends_of_graphs_are_wrong(monkeypatch):
 
 def test_wetted_caps_are_integrated_exactly(monkeypatch):
     """A flat membrane cuts a sphere in a circle, whose cap is known."""
-    monkeypatch.setattr("iga_membrane.solver.trim.EXTRA", 12)
+    monkeypatch.setattr("iga_membrane.contact.unfitted.EXTRA", 12)
     scene = cell("square", elements=12)
     assembly = Assembly(scene)
     x, y, z = (c / 0.05 for c in (0.013, 0.007, -0.05))

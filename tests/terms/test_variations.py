@@ -6,7 +6,7 @@ from helpers import droplet, pinned_cap
 from taylor import lagrangian, lagrangian_slopes
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.splines import line_basis, tensor_space
 from iga_membrane.terms import variations as vary
 

@@ -8,7 +8,7 @@ from helpers import UNIT_VOLUME
 from taylor import lagrangian_slopes, remainder_slopes
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.splines import line_basis
 from iga_membrane.terms import NormalLineLoad, PlaneContactLine, SphereContactLine
 from iga_membrane.terms import stabilization as stable

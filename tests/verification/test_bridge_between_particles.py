@@ -5,7 +5,7 @@ import pytest
 from helpers import UNIT_VOLUME
 
 import iga_membrane as iga
-from iga_membrane.solver.assembly import Assembly
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.terms import BodyDensity
 
 PAIR = [iga.Sphere(60.0, 0.8, (-1.2, 0.3, -0.5)), iga.Sphere(75.0, 0.6, (1.1, 0.2, 0.8))]

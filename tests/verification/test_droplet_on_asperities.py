@@ -212,7 +212,7 @@ def test_random_asperities_in_the_full_model(sizes):
 
 @pytest.mark.slow
 def test_ten_thousand_asperities_cost_no_more_than_four_hundred():
-    from iga_membrane.solver.assembly import Assembly
+    from iga_membrane.assembly.lagrangian import Assembly
 
     foot = np.pi * drop_on_plane(1.0, 180.0)["contact_radius"] ** 2
 

@@ -98,8 +98,8 @@ def test_the_frame_moves_with_the_sphere():
 
 def test_line_load_is_the_normal_component_of_the_tension():
     """Paper eq. (31): q_n = gamma sin(theta), the multiplier of the line held on the sphere."""
-    from iga_membrane.solver.assembly import Assembly
-    from iga_membrane.solver.newton import NewtonOptions, newton
+    from iga_membrane.assembly.lagrangian import Assembly
+    from iga_membrane.solvers.newton import NewtonOptions, newton
 
     scene = on_sphere(110, 1.0, 0.0, model="full", degree=3, elements=8)
     assembly = Assembly(scene)

@@ -5,7 +5,7 @@ import pytest
 from helpers import UNIT_VOLUME
 
 import iga_membrane as iga
-from iga_membrane.scenes.start import drop_on_sphere
+from iga_membrane.initial.profiles import drop_on_sphere
 
 
 def free(angle, radius, center, **given):

@@ -9,7 +9,7 @@ import pytest
 from helpers import UNIT_VOLUME, droplet_file
 
 import iga_membrane as iga
-from iga_membrane.solver.result_file import result
+from iga_membrane.driver.result_file import result
 
 
 def sheet(angle=90.0, height=0.0, *, density=1.0, gravity=0.1, motion="fixed", size=5.0):

@@ -103,7 +103,7 @@ def test_where_fading_fails_the_stabilization_fades_less():
 
 
 def test_a_stabilization_that_has_not_relaxed_is_named(monkeypatch):
-    monkeypatch.setattr("iga_membrane.solver.quasi_static.RELAXATIONS", 3)
+    monkeypatch.setattr("iga_membrane.solvers.quasi_static.RELAXATIONS", 3)
     membrane = iga.WholeMembrane(stabilization=100.0, load_steps=2)
     found = iga.solve(sheet(110.0, membrane=membrane, degree=2, elements=6), on_fail="return")
     assert found.status is iga.Status.STALLED

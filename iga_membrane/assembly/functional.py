@@ -1,0 +1,292 @@
+"""Energy and constraints of a scene: what the solver makes stationary, without derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import thread_time
+
+import numpy as np
+
+from ..arrays import Array, Mask
+from ..contact.binding import contact_of, law_of, line_of, same_law, trim_of
+from ..contact.edge_lines import EdgeLines
+from ..deadline import check_time
+from ..dofs.boundary_conditions import Sliding, Support
+from ..dofs.cartesian import Cartesian
+from ..dofs.dof_map import Rows
+from ..dofs.spines import Motion, Spines
+from ..dofs.symmetry import sector_table
+from ..errors import GeometryError
+from ..problems.scene import Scene
+from ..splines import Table
+from ..surface.surface import Surface
+from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LocalGap, Stabilization, gap
+from ..terms import variations as vary
+from .stabilizer import Stabilizer
+
+
+@dataclass(frozen=True, eq=False)
+class Energies:
+    """Values of one state (whole body, dimensionless).
+
+    Attributes
+    ----------
+    total : energy without constraints.
+    constraints : (m,) prescribed integrals minus their values.
+    area_vectors : (elements, points, 3) ``a_1 x a_2`` at the quadrature points.
+    lowest : smallest z at the quadrature points.
+    true : whether contact lines inside the membrane lie on their solid.
+    counts : (elements,) whether an element has a part outside the solids.
+    """
+
+    total: float
+    constraints: Array
+    area_vectors: Array
+    lowest: float
+    true: bool
+    counts: Mask
+
+    def regular_after(self, before: Energies) -> bool:
+        """Finite, and nowhere folded over against the state before it."""
+        both = self.counts & before.counts
+        dot = np.einsum("eqi,eqi->eq", self.area_vectors[both], before.area_vectors[both])
+        return bool(self.true and np.isfinite(self.total) and (dot > 0).all())
+
+
+class Functional:
+    """Energy and constraints of a scene, on one sector in the scene's scale.
+
+    Parameters
+    ----------
+    scene : its surface's space and supports fix the numbering; its start is not used.
+    points : Gauss points per direction; if omitted ``degree + 1``, but ``degree`` round a smooth
+        ring, where the functions are splines on equal knots (docs/results/choices.md).
+    """
+
+    def __init__(self, scene: Scene, points: int | None = None) -> None:
+        surface = scene.local_surface()
+        space, sector = surface.space, scene.sector
+        self.copies = sector.copies
+        self._mirrored = [axis in sector.mirrored for axis in "xyz"]
+        self._supports: tuple[Support, ...] = scene.local_supports()
+        self.spines = _motion(scene, surface, self._supports)
+        self.size = self.spines.size
+        ring = space.bases[0]
+        around = max(3, ring.degree) if ring.periodic and ring.smooth else ring.degree + 1
+        self.points = (points, points) if points else (around, space.bases[1].degree + 1)
+        self.table = sector_table(space, sector, self.points)
+        self.rows = Rows(self.spines, self.table)
+        self.seconds = 0.0
+        self._ring = np.arange(ring.elements // sector.copies)
+        self._space, self._start = space, surface
+        self._law = law_of(scene)
+        self.contact = contact_of(scene, surface, self.points)
+        self.trim = trim_of(scene, surface, self.table, self.spines.unknowns, self.size)
+        self.stabilizer: Stabilizer | None = None
+        self._kept: Motion | None = None
+        self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
+        self.load(scene)
+
+    def motion(self, surface: Surface) -> Motion:
+        """The spines on a surface, or those that are kept."""
+        return self._kept or self.spines.on(surface)
+
+    def keep_motion(self, surface: Surface) -> None:
+        """From now on move along the spines of a surface: what lies inside solids follows them, so
+        they must not follow it."""
+        self._kept = self.spines.on(surface)
+
+    def load(self, scene: Scene) -> None:
+        """Take the terms of another scene of the same space, whose supports move the same edges.
+
+        Raises
+        ------
+        GeometryError
+            Contact areas in the one, contact lines inside the membrane in the other.
+        """
+        terms, supports = scene.local_terms(), scene.local_supports()
+        if supports != self._supports:
+            self._supports = supports
+            self.spines = _motion(scene, scene.local_surface(), supports)
+            self.rows = Rows(self.spines, self.table)
+        self.constraints = [t for t in terms if isinstance(t, Constraint)]
+        self.tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+        self.gaps = [t for t in terms if isinstance(t, LocalGap)]
+        self._bodies = [
+            t.density() for t in terms if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
+        ]
+        self.held = [t.density() for t in self.constraints]
+        self._targets = np.array([t.target for t in self.constraints]) / self.copies
+        self.edges = EdgeLines(scene, self._space, self.points[0], self._ring, self.rows)
+        self._load_solid(scene)
+
+    def _load_solid(self, scene: Scene) -> None:
+        """Take another scene's solid, its angles, its law of contact."""
+        law, line = law_of(scene), line_of(scene)
+        if (law is None) != (self.contact is None) or (line is None) != (self.trim is None):
+            raise GeometryError("this scene meets its solid in another way than the one before")
+        if self.trim is not None and line is not None:
+            self.trim.term = line
+            self.trim.forget()
+        if self.contact is not None and not same_law(law, self._law):
+            memory = self.contact.memory
+            self.contact = contact_of(scene, self._start, self.points)
+            assert self.contact is not None
+            self.contact.recall(memory)
+        self._law = law
+        self.contact_rows = self._contact_rows()
+
+    def _contact_rows(self) -> Table | None:
+        """The contact's table by rows of the motion; a penalty acts at the quadrature points."""
+        if self.contact is None:
+            return None
+        if isinstance(self.spines, Cartesian):
+            return self.rows.wide
+        return self.rows.with_shifts(self.contact.table)
+
+    def anew(self, surface: Surface) -> Surface:
+        """The start, as far away as the top of a surface has been shifted."""
+        start = self.spines.anew(surface)
+        self.follow(start)
+        return start
+
+    def follow(self, surface: Surface) -> None:
+        """Find what is in contact in a mesh that has moved sideways."""
+        if self.contact is not None:
+            self.contact.follow(surface)
+            self.contact_rows = self._contact_rows()
+
+    def begin_step(self, surface: Surface, term: Stabilization) -> None:
+        """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
+        eq. (23), and tractions of the penalty count per area of it."""
+        normals = self.spines.on(surface).directions[: self._space.count].copy()
+        if self.contact is not None and self.edges.wetted:
+            # the contact line is a kink, which has no tangent plane
+            normals[self._space.edge_functions(self.edges.wetted[0][0].edge)] = 0.0
+        self.stabilizer = Stabilizer(term, self.table, surface.points, normals)
+        if self.contact is not None:
+            self.contact.area = self.stabilizer.before.area
+
+    @property
+    def multipliers(self) -> int:
+        """Number of multipliers: of the constraints, then of the edges held on solids, then of the
+        shifts' gauge."""
+        return len(self.held) + self.edges.gap_count + len(self.spines.shifts)
+
+    def line_load(self, multipliers: Array) -> Array:
+        """(count,) coefficients of the load with which a curved solid holds its edge."""
+        first = len(self.held)
+        loads = np.append(multipliers[first : first + self.edges.gap_count], 0.0)
+        return loads[self.spines.held[self.spines.second]]
+
+    @property
+    def body(self) -> BodyDensity:
+        """Sum of the body densities that are not constraints."""
+        return sum(self._bodies, BodyDensity())
+
+    def density(self, multipliers: Array) -> BodyDensity:
+        """Body density of the Lagrangian."""
+        held = (d * -float(m) for d, m in zip(self.held, multipliers, strict=False))
+        return sum(held, self.body)
+
+    def energies(self, surface: Surface) -> Energies:
+        """Energy and constraints of a state."""
+        start = thread_time()
+        points = surface.points
+        found = self.energies_at(points, vary.element_points(self.table, points))
+        self.seconds += thread_time() - start
+        return found
+
+    def energies_at(self, points: Array, at: vary.ElementPoints) -> Energies:
+        """The same, its geometry at the quadrature points being known."""
+        check_time()
+        total, constraints = self.values(points, at)
+        total += sum(gap.energy(self.table, at, law.at(at.x)) for law in self.gaps)
+        if self.contact is not None:
+            total += self.contact.energy(self.contact.touch(points))
+        if self.stabilizer is not None:
+            total += self.stabilizer.energy(points)
+        if self.trim is not None:
+            total += self.tension * self.trim.ties.energy(points)
+        true, counts = True, np.ones(len(at.c), bool)
+        if self.trim is not None:
+            true, counts = self.trim.true(points), self.trim.counts(points)
+        lowest = float(at.x[counts, :, 2].min(initial=np.inf))
+        return Energies(total, constraints, at.c, lowest, true, counts)
+
+    def energy(self, surface: Surface) -> float:
+        """Energy of the liquid and its contact, without what ties the control points."""
+        total = self.energies(surface).total
+        return (
+            total
+            if self.trim is None
+            else total - self.tension * self.trim.ties.energy(surface.points)
+        )
+
+    def body_integral(self, surface: Surface, density: BodyDensity) -> float:
+        """Integral of a density over the liquid of one sector, its part under the foot included."""
+        points = surface.points
+        at = vary.element_points(self.table, points)
+        return float(self._integrals(points, at, 0.0, [density])[1])
+
+    def interface(self, surface: Surface) -> tuple[float, float, float]:
+        """Area of the membrane, energy of the wetted surface and its area (one sector)."""
+        points = surface.points
+        at = vary.element_points(self.table, points)
+        area = sum(vary.energies(rows, part, [])[0] for rows, part in self.parts(points, at))
+        if self.contact is not None and self.contact.adhesion:
+            return area, -self.contact.gained(points), 0.0
+        energy, wet = self.edges.wetting(points)
+        inside = (0.0, 0.0) if self.trim is None else self.trim.wetting(points)
+        return area, energy + inside[0], wet + inside[1]
+
+    def whole(self, vector: Array) -> Array:
+        """(3,) sum over all sectors of a vector integrated over one."""
+        return np.asarray(self.copies * np.where(self._mirrored, 0.0, vector))
+
+    def parts(
+        self, points: Array, at: vary.ElementPoints
+    ) -> list[tuple[Table, vary.ElementPoints]]:
+        """Tables by rows of the motion, and the geometry there, that make up the membrane."""
+        if self.trim is None:
+            return [(rows, at.part(elements)) for elements, rows in self.rows.groups]
+        outside = self.trim.outside(points)
+        whole, cut = (self.rows.shifted.weighted(outside.share), at), outside.area
+        return [whole, (cut, vary.element_points(cut, points))] if len(cut.functions) else [whole]
+
+    def values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
+        """Energy of the liquid, and the prescribed integrals minus their values."""
+        interface, body, *held = self._integrals(points, at, self.tension, [self.body, *self.held])
+        # every step keeps to the gauge, which is linear
+        gauge = np.zeros(len(self.spines.shifts))
+        missing = np.array(held) - self._targets
+        gaps = self.edges.gap_values(points)
+        return interface + body, np.concatenate([missing, gaps, gauge])
+
+    def _integrals(
+        self, points: Array, at: vary.ElementPoints, tension: float, bodies: list[BodyDensity]
+    ) -> Array:
+        """Energy of the interface and the wetted surface, then the body integrals."""
+        total = np.zeros(1 + len(bodies))
+        if self.trim is None:
+            area, integrals = vary.energies(self.table, at, bodies)
+            total[0], total[1:] = tension * area, integrals
+        else:
+            for rows, part in self.parts(points, at):
+                area, integrals = vary.energies(rows, part, bodies)
+                total[0] += tension * area
+                total[1:] += integrals
+            total[0] += self.trim.wetting(points)[0] if tension else 0.0
+            total[1:] += [self.trim.under(points, body) for body in bodies]
+        for term, edge in self.edges.lines:
+            none = BodyDensity()
+            total[0] += term.energy(edge, points, term.strength, none) if tension else 0.0
+            total[1:] += [term.energy(edge, points, 0.0, body) for body in bodies]
+        return total
+
+
+def _motion(scene: Scene, surface: Surface, supports: tuple[Support, ...]) -> Spines:
+    """The motion that a scene asks for."""
+    if scene.motion == "cartesian":
+        return Cartesian(surface, supports)
+    return Spines(surface, supports, scene.directions)

@@ -1,0 +1,314 @@
+"""The membrane outside its solids: which elements count, and quadrature where lines cut them."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, Index, Mask
+from ..deadline import check_time
+from ..solids import Solid
+from ..splines import LineTable, Space, Table, cut, faces_between
+from ..surface.bezier import BezierPatches, bezier_net
+from ..surface.surface import Surface
+from ..terms import BodyDensity, TrimmedContactLine
+from ..terms.trimmed import CapDensity, Line, on_line, wet_integral
+from ..terms.variations import flux
+from .ghost_penalty import Ties
+
+CORE = 0.65, 0.85
+"""Least and largest part of a spot's radius inside which the membrane counts as deeper than it
+lies."""
+LOOSE = 0.3
+"""The least part of a spot on a particle."""
+ON_LINE = 1e-7
+"""Gap over the contact length that points of a contact line may have."""
+EXTRA = 4
+"""Gauss points beyond the degree in cut elements: the Hessian is that of the exact integrals."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outside:
+    """The part of the membrane outside the solid, at one state.
+
+    Attributes
+    ----------
+    share : (elements,) 1 for elements wholly outside, 0 for others.
+    touched : (elements,) whether an element is cut.
+    area : functions in the outer parts of cut elements, by pieces.
+    line, ends : functions on contact lines and at the ends of their pieces.
+    """
+
+    share: Array
+    touched: Mask
+    area: Table
+    line: LineTable
+    ends: LineTable
+
+
+class Trim:
+    """What lies outside the solid of a term, on one sector.
+
+    Parameters
+    ----------
+    table : functions of the sector's elements at ordinary quadrature points.
+    elements, portion : (elements,) of the space, and the portion of each that is in the sector.
+    images : matrices (3, 3) that carry the sector to each of its images.
+    element : size of the elements at the solid over the contact length.
+    unknowns : (rows,) unknown of each control point, -1 for none; size : their number.
+    """
+
+    def __init__(
+        self,
+        term: TrimmedContactLine,
+        space: Space,
+        table: Table,
+        elements: Index,
+        portion: Array,
+        images: list[Array],
+        element: float,
+        unknowns: Index,
+        size: int,
+    ) -> None:
+        self.term, self.space, self.table = term, space, table
+        self.elements, self.portion = elements, portion
+        self._images, self._element = images, element
+        self._faces = faces_between(space, elements)
+        own = unknowns[: space.count]
+        self.ties = Ties(space, elements, portion, self._faces, own, size)
+        self._points = space.degree + EXTRA
+        self._known: list[tuple[Array, Outside]] = []
+        self._cores = np.zeros(0, int), np.zeros((0, 3)), np.zeros(0)
+        self.begin()
+
+    def released(self) -> Trim:
+        """The same without idle unknowns, for sums in which every row has its own."""
+        free = copy(self)
+        free.ties = copy(self.ties)
+        free.ties.idle = np.zeros(0, int)
+        return free
+
+    def forget(self) -> None:
+        """Cut anew: the solid may have changed."""
+        self._known.clear()
+
+    def begin(self) -> None:
+        """Free to choose again what is tied; spots are where they were."""
+        least = np.min(self.term.angles_of_substrate, initial=180.0)
+        self.ties.begin(np.pi - np.radians(float(least)), self._element)
+        self._known.clear()
+
+    @property
+    def solid(self) -> Solid:
+        """That the membrane passes through."""
+        return self.term.solid
+
+    @property
+    def length(self) -> float:
+        """Over which contact changes."""
+        return self.term.solid.scale
+
+    def counts(self, points: Array) -> Mask:
+        """(elements,) whether an element has a part outside."""
+        at = self.outside(points)
+        return np.asarray(at.touched | (at.share > 0))
+
+    def outside(self, points: Array) -> Outside:
+        """The outer part for control points (count, 3)."""
+        for known, found in self._known:
+            if known is points:
+                return found
+        found = self.cut(points, self._points)
+        self._known = [(points, found), *self._known[:2]]
+        return found
+
+    def on_line(self, points: Array, outside: Outside | None = None) -> Line:
+        """Geometry on the contact lines, with other quadrature if another cut is given."""
+        return on_line(self.term, (outside or self.outside(points)).line, points)
+
+    def on_ends(self, points: Array) -> Line:
+        """Geometry at the ends of their pieces."""
+        return on_line(self.term, self.outside(points).ends, points)
+
+    def wetting(self, points: Array) -> tuple[float, float]:
+        """Energy of the wetted surface and its area."""
+        line, term = self.on_line(points), self.term
+        area = wet_integral(line, term, lambda x, normal, which: np.ones(which.shape))
+        cosine = line.cosine[:, :1].sum(axis=1)
+        return float(-term.gamma * (cosine * area).sum()), float(area.sum())
+
+    def cap(self, points: Array, density: CapDensity, outside: Outside | None = None) -> float:
+        """Integral over the wetted surface."""
+        return float(wet_integral(self.on_line(points, outside), self.term, density).sum())
+
+    def under(self, points: Array, body: BodyDensity, outside: Outside | None = None) -> float:
+        """Part of a body integral that the flux through the wetted surface brings in."""
+        return self.cap(points, lambda x, n, which: -flux(body, x) * n[..., 2], outside)
+
+    def true(self, points: Array) -> bool:
+        """Whether the contact lines lie on the solid, not on the border of a spot's core."""
+        gap = self.on_line(points).at.gap
+        return bool((np.abs(gap) <= ON_LINE * self.length).all())
+
+    def near(self, points: Array) -> Array:
+        """(elements,) whether an element is near the solid."""
+        x = self.table.values @ points[self.table.functions]
+        return np.asarray((self.term.solid.nearest(x).gap < self.length).any(axis=1))
+
+    def cut(self, points: Array, count: int) -> Outside:
+        """Cut the elements, with ``count`` Gauss points along each piece."""
+        x, a1, a2 = self.table.derivatives(points)
+        gap = self.term.solid.nearest(x).gap
+        sizes = [b.sizes for b in self.space.bases]
+        e1, e2 = np.divmod(self.elements, self.space.bases[1].elements)
+        reach = np.linalg.norm(a1, axis=-1).max(axis=1) * sizes[0][e1]
+        reach = reach + np.linalg.norm(a2, axis=-1).max(axis=1) * sizes[1][e2]
+        least, most = gap.min(axis=1), gap.max(axis=1)
+        sign = np.where(least > reach, 1, -1)
+        near = np.flatnonzero((least <= reach) & (most >= -reach))
+        nets = bezier_net(Surface(self.space, points), self.elements[near])
+        patches = BezierPatches(nets[..., :3])
+
+        def level(rows: Index, u: Array) -> tuple[Array, Array, Index]:
+            check_time()
+            x, slopes = patches.at(rows, u)
+            at = self.term.solid.nearest(x)
+            depth, outward = self._core(x, at.which)
+            return at.gap - depth, np.einsum("kqci,kqi->kqc", slopes, at.normal + outward), at.which
+
+        made = cut(level, len(near), count)
+        sign[near] = made.sign
+        whole = self._connected(sign >= 0)
+        keep = [whole[near[p.rows]] for p in (made.area, made.line, made.ends)]
+        area, line, ends = (
+            p.part(k) for p, k in zip((made.area, made.line, made.ends), keep, strict=True)
+        )
+        owner = made.ends_line[keep[2]]
+        return Outside(
+            ((sign > 0) & whole).astype(float),
+            (sign == 0) & whole,
+            self._area_table(near[area.rows], area.u, area.weights),
+            self._line_table(
+                near[line.rows],
+                line.u,
+                line.weights,
+                made.across[keep[1]],
+                made.rising[keep[1]],
+                True,
+            ),
+            self._line_table(
+                near[ends.rows], ends.u, ends.weights, made.across[owner], made.rising[owner], False
+            ),
+        )
+
+    def _core(self, x: Array, which: Index) -> tuple[Array, Array]:
+        """How much deeper points count than they lie, well inside contact lines, and minus its
+        gradient (..., 3): the spline may rise out of its solid again there, where nothing holds it.
+        """
+        numbers, middles, radii = self._cores
+        if not len(numbers):
+            return np.zeros(which.shape), np.zeros(x.shape)
+        place = np.minimum(np.searchsorted(numbers, which), len(numbers) - 1)
+        radius = np.where(numbers[place] == which, radii[place], 0.0) + 1e-300
+        away = _across(x - middles[place], self.term.axis(which))
+        level = np.linalg.norm(away, axis=-1)
+        inside = np.maximum(1.0 - level / radius, 0.0)
+        strength = self.term.solid.radius_of(which)
+        slope = 2.0 * strength * inside / (radius * np.maximum(level, 1e-300))
+        return strength * inside**2, slope[..., None] * away
+
+    def _find_cores(self, points: Array) -> None:
+        """Middles of the wetted spots of the whole body, and radii well inside them, for the next
+        states.
+
+        A membrane that leaves the sphere at ``psi = pi - theta`` would, with the curvature it has
+        there, meet it again about ``psi r`` farther in.
+        """
+        line, solid = self.on_line(points), self.term.solid
+        speed = np.linalg.norm(line.tangent, axis=-1)
+        along = line.tangent / speed[..., None]
+        rise = np.sign(line.gh)[..., None] * line.ah
+        rise = rise - np.einsum("kqi,kqi->kq", rise, along)[..., None] * along
+        x, dry = (np.concatenate([v @ m for m in self._images]).reshape(-1, 3)
+                  for v in (line.x, rise))  # fmt: skip
+        arc = np.tile(speed * line.table.weights, (len(self._images), 1)).ravel()
+        numbers: Index
+        numbers, place = np.unique(solid.nearest(x).which, return_inverse=True)
+        outer: Mask = np.ones(len(x), bool)
+        for _ in range(2):
+            weight = np.bincount(place, arc * outer)
+            middles = np.stack([np.bincount(place, arc * outer * v) / weight for v in x.T], axis=1)
+            away = _across(x - middles[place], self.term.axis(numbers[place]))
+            # inside a spot the spline may rise out of its solid again: no contact line
+            outer = np.einsum("ki,ki->k", away, dry) > 0.0
+            outer |= np.bincount(place, outer)[place] == 0
+        radii: Array = np.full(len(numbers), np.inf)
+        np.minimum.at(radii, place[outer], np.linalg.norm(away[outer], axis=1))
+        psi = np.pi - np.arccos(self.term.cosine(numbers))
+        again = 0.5 * psi * solid.radius_of(numbers)
+        # on a particle, which may stand anywhere, a line has farther to go than on an asperity
+        least = np.where(self.term.particle(numbers) >= 0, LOOSE, CORE[0])
+        self._cores = numbers, middles, np.clip(radii - again, least * radii, CORE[1] * radii)
+        self._known.clear()
+
+    def _connected(self, active: Mask) -> Mask:
+        """Those of the active elements that hang together with most of them."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        f = self._faces.part(active[self._faces.first] & active[self._faces.second])
+        count = len(active)
+        graph = coo_array((np.ones(len(f.first)), (f.first, f.second)), (count, count))
+        _, label = connected_components(graph, directed=False)
+        largest = np.bincount(label[active]).argmax() if active.any() else -1
+        return np.asarray(active & (label == largest))
+
+    def _area_table(self, rows: Index, u: Array, weights: Array) -> Table:
+        chosen = self.elements[rows]
+        table = self.space.inside(chosen, u, 1)
+        scale = self._sizes(chosen).prod(axis=1) * self.portion[rows]
+        return Table(
+            self.table.functions[rows],
+            table[0, 0],
+            table[1, 0],
+            table[0, 1],
+            weights * scale[:, None],
+            u,
+        )
+
+    def _line_table(
+        self, rows: Index, u: Array, weights: Array, across: Index, rising: Index, along: bool
+    ) -> LineTable:
+        chosen = self.elements[rows]
+        table = self.space.inside(chosen, u, 2)
+        scale = self.portion[rows]
+        if along:
+            scale = scale * self._sizes(chosen)[np.arange(len(rows)), 1 - across]
+        keys = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+        return LineTable(
+            self.table.functions[rows],
+            tuple(table[key] for key in keys),
+            weights * scale[:, None],
+            across,
+            rising,
+        )
+
+    def _sizes(self, elements: Index) -> Array:
+        """(k, 2) sizes of elements in the parameters."""
+        e1, e2 = np.divmod(elements, self.space.bases[1].elements)
+        return np.stack([self.space.bases[0].sizes[e1], self.space.bases[1].sizes[e2]], axis=1)
+
+    def hold(self, points: Array) -> None:
+        """Choose what is tied and what is idle, for a state and the steps from it."""
+        self._find_cores(points)
+        middle = (self.table.values @ points[self.table.functions]).mean(axis=1)
+        nearest = self.term.particle(self.term.solid.nearest(middle).which)
+        self.ties.hold(self.counts(points), self.outside(points).touched, nearest >= 0)
+
+
+def _across(vectors: Array, axes: Array) -> Array:
+    """The part of vectors (..., 3) at right angles to unit axes."""
+    along = np.einsum("...i,...i->...", vectors, axes)
+    return np.asarray(vectors - along[..., None] * axes)

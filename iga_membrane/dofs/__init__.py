@@ -1,0 +1,1 @@
+"""Unknowns: how control points may move, and which numbers move them."""

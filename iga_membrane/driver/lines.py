@@ -1,0 +1,101 @@
+"""The contact lines of a solution, solid by solid, in world coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arguments import checked
+from ..arrays import Index
+from ..assembly.lagrangian import Assembly
+from ..dofs.symmetry import mirrors
+from ..problems.scene import Scene
+from ..results.contact_line import ContactLine, contact_line, trimmed_line
+from ..results.measures import own_asperity
+from ..surface.surface import Surface
+from ..terms import PlaneContactLine, SphereContactLine, TrimmedContactLine
+from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class LineOnSolid:
+    """A contact line on one solid.
+
+    Attributes
+    ----------
+    solid : its number, as in ``Solution.contact["asperities"]``; -1 for a plane. A droplet's
+        particles come after the asperities of its list; on a lattice, that of the asperities which
+        the droplet may meet.
+    line : geometry along it, in world coordinates and the user's units, once round the solid.
+    """
+
+    solid: int
+    line: ContactLine
+
+
+@checked()
+def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
+    """Contact lines of a solution.
+
+    Parameters
+    ----------
+    solution : converged or not.
+
+    Returns
+    -------
+    One for each solid that has a line, in the order of their numbers; none where the membrane lies
+    on its solid (180 degrees) or on none.
+
+    Notes
+    -----
+    Points are those of the quadrature, exact to rounding on lines along edges and to 1e-7 of a
+    sphere's radius where the membrane passes through it. Tangents and conormals are those of the
+    spline (paper eqs 33-34).
+    """
+    scene = solution.scene
+    surface = solution.surface.moved(scene.units.to_local(solution.surface.points))
+    found = []
+    if any(isinstance(term, TrimmedContactLine) for term in scene.terms):
+        found += _inside(scene, surface)
+    for term in scene.local_terms():
+        if isinstance(term, SphereContactLine):
+            line = contact_line(surface, term.edge, solid=term.sphere)
+            alone = own_asperity(scene)
+            number = sum(each.solid >= 0 for each in found) if alone is None else alone
+            found.append(LineOnSolid(number, line))
+        elif isinstance(term, PlaneContactLine):
+            found.append(LineOnSolid(-1, contact_line(surface, term.edge)))
+    return tuple(LineOnSolid(each.solid, _world(scene, each.line)) for each in found)
+
+
+def _inside(scene: Scene, surface: Surface) -> list[LineOnSolid]:
+    """Lines inside the membrane, split by their solids and put in order round them."""
+    trim = Assembly(scene).trim
+    assert trim is not None
+    whole = trimmed_line(trim, surface, mirrors(scene.sector))
+    owner = trim.solid.nearest(whole.position).which
+    found = []
+    for which in np.unique(owner):
+        line = _part(whole, np.flatnonzero(owner == which))
+        axis = trim.term.axis(np.array([which]))[0]
+        away = line.position - line.arc @ line.position / line.arc.sum()
+        first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        turn = np.arctan2(away @ np.cross(axis, first), away @ first)
+        found.append(LineOnSolid(int(which), _part(line, np.argsort(turn))))
+    return found
+
+
+def _part(line: ContactLine, some: Index) -> ContactLine:
+    return ContactLine(*(values[some] for values in vars(line).values()))
+
+
+def _world(scene: Scene, line: ContactLine) -> ContactLine:
+    scale = scene.units
+    return replace(
+        line,
+        position=scale.to_world(line.position),
+        tangent=line.tangent @ scale.axes.T,
+        conormal=line.conormal @ scale.axes.T,
+        arc=line.arc * scale.length,
+    )

@@ -1,0 +1,1 @@
+"""Starts: shapes near equilibrium, and meshes that are fine where they must be."""

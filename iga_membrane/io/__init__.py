@@ -1,0 +1,1 @@
+"""Scene files: text to problems, by declarations that check it."""

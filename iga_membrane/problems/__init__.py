@@ -1,0 +1,1 @@
+"""Problems: what is asked, as data; one file for each family."""

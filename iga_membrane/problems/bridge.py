@@ -1,0 +1,124 @@
+"""A droplet that bridges two solids, particles or a plane and a particle: its membrane lies between
+their contact lines.
+
+Its frame has the axis z from the first solid to the second and its origin where the first one meets
+it. It starts from the toroid of least energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import Array
+from ..dofs.boundary_conditions import Sliding
+from ..errors import SceneError
+from ..initial.toroid import End, least_energy_toroid
+from ..solids import Plane, Solid, Sphere
+from ..surface.ring import axisymmetric, ring_space
+from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from .spec import BALL, Foot, Question, sector_of
+
+CLOSE = 0.5
+"""Gap between two solids over a droplet's length across which it bridges them easily: a wider one
+is approached from there where its own start fails."""
+SMALL = 0.15
+"""Radius of a particle on a plane's droplet, over the droplet's length, below which elements must
+crowd round it: from there on the force differs by 1e-6 between 20 and 40 elements here."""
+CENTERED = 1e-9
+"""Distance of a particle from a plane's axis, over its radius, that is none."""
+
+Ends = tuple[Plane | Sphere, Sphere]
+"""The solids that a bridge joins."""
+
+
+def ends_of(
+    substrate: Solid | None, particles: Sequence[Sphere], contact_line: str, length: float
+) -> Ends | None:
+    """The solids that a droplet of a length bridges: two particles, or a plane and a particle on
+    its axis that is not small and on which the membrane may end; else None."""
+    if substrate is None and len(particles) == 2:
+        return particles[0], particles[1]
+    if not isinstance(substrate, Plane) or len(particles) != 1:
+        return None
+    (particle,) = particles
+    conforming = contact_line == "conforming" or (
+        contact_line == "auto" and particle.motion == "fixed"
+    )
+    x, y, _ = np.subtract(particle.center, substrate.point) @ substrate.axes()
+    centered = float(np.hypot(x, y)) <= CENTERED * particle.radius
+    large = particle.radius >= SMALL * length and substrate.contact_angle < 180.0
+    return (substrate, particle) if centered and conforming and large else None
+
+
+def frame_of(ends: Ends) -> tuple[tuple[float, float, float], Array]:
+    """Origin and axes of a bridge."""
+    first, second = ends
+    if isinstance(first, Plane):
+        return first.point, first.axes()
+    way = np.subtract(second.center, first.center)
+    x, y, z = (float(c) for c in way / np.linalg.norm(way))
+    axes = Plane(90.0, normal=(x, y, z)).axes()
+    x, y, z = (float(c) for c in np.array(first.center) + first.radius * axes[:, 2])
+    return (x, y, z), axes
+
+
+def gap_between(ends: Ends) -> float:
+    """Shortest distance between two solids."""
+    origin, axes = frame_of(ends)
+    return float(np.subtract(ends[1].center, origin) @ axes[:, 2]) - ends[1].radius
+
+
+def at_gap(ends: Ends, gap: float) -> Sphere:
+    """The second solid, at another distance from the first."""
+    origin, axes = frame_of(ends)
+    x, y, z = np.array(origin) + (gap + ends[1].radius) * axes[:, 2]
+    return replace(ends[1], center=(float(x), float(y), float(z)))
+
+
+def bridge(parts: Question, ends: Ends) -> Foot:
+    """The skin of a droplet between two solids.
+
+    Raises
+    ------
+    SceneError
+        A start, a penalty, or another kind of contact line.
+    """
+    if parts.start is not None or parts.law.penalty is not None:
+        raise SceneError("particle: a droplet between two solids needs its own start, no penalty")
+    if parts.contact_line not in ("auto", "conforming"):
+        raise SceneError(
+            f'solver.contact_line = "{parts.contact_line}": between two particles it is '
+            '"conforming"; leave it out'
+        )
+    gap = gap_between(ends)
+    if isinstance(ends[0], Plane) and gap < -1e-9 * ends[1].radius:
+        raise SceneError(
+            f"particle[0].center = {list(ends[1].center)}: {ends[1].radius + gap:g} above the "
+            f"plane, less than its radius {ends[1].radius:g}: it reaches {-gap:.3g} into the "
+            "substrate"
+        )
+    mesh, scale, gamma = parts.asked.mesh(), parts.scale, parts.liquid.surface_tension
+    low, high = End.of(_local(scale, ends[0]), 1.0), End.of(_local(scale, ends[1]), -1.0)
+    arc = least_energy_toroid(low, high, BALL)
+    start = axisymmetric(ring_space(mesh.space, mesh.degree, mesh.elements), arc)
+    lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2])]
+    lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2]))
+    supports = [Sliding("xi2=0", None if isinstance(ends[0], Plane) else ends[0])]
+    supports.append(Sliding("xi2=1", ends[1]))
+    surface = start.moved(scale.to_world(start.points))
+    return Foot(surface, sector_of(mesh, parts.bond), mesh, lines, supports)
+
+
+def _local(scale: Scale, solid: Plane | Sphere) -> Plane | Sphere:
+    return solid if isinstance(solid, Plane) else scale.local_sphere(solid)
+
+
+def _line(gamma: float, solid: Plane | Sphere, edge: str, toward: Array) -> LineTerm:
+    """The contact line on a solid, whose liquid lies in a direction."""
+    if isinstance(solid, Plane):
+        return PlaneContactLine(gamma, solid.contact_angle, edge)
+    x, y, z = (float(a) for a in toward)
+    return SphereContactLine(gamma, solid, edge, toward=(x, y, z))

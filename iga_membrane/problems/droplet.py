@@ -1,0 +1,310 @@
+"""A droplet at rest on a substrate (paper section 6.1, figure 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..arguments import checked
+from ..arrays import Array
+from ..checks import either, instance, listed, number, vector, words
+from ..errors import SceneError
+from ..initial.closed_droplet import STARTS
+from ..initial.liquid import Discretization, Liquid, with_defaults
+from ..initial.particle_placement import check_particles
+from ..own import is_own
+from ..solids import Plane, Solid, Sphere
+from ..solids.own import check_solid
+from ..surface.surface import Surface
+from ..terms import (
+    Centroid,
+    Contact,
+    Gravity,
+    Scale,
+    SphereContactLine,
+    SurfaceTension,
+    Term,
+    TrimmedContactLine,
+    Volume,
+)
+from ..terms.term import ROOM
+from .bridge import CLOSE, at_gap, bridge, ends_of, gap_between
+from .bridge import frame_of as frame_between
+from .contact_setup import CONTACT_LINES, foot_of
+from .continuation_path import from_alone, from_another_angle
+from .description import described_droplet
+from .free import at_displacement, frame_of, pulled_by, seat_of
+from .hints import hints
+from .moving import check_fixed, fixed, moving
+from .one_asperity import discretizations as asperity_lines
+from .osman_sauer import WholeMembrane, droplet_with_wetted_part
+from .particle_foot import discretizations as particle_lines
+from .particle_foot import with_particles
+from .scene import FreeEdge, Ramp, Scene
+from .smooth_foot import rim_radius, with_rim
+from .spec import Question
+
+ROUNDING = 1e-12
+"""Part of gravity along an axis of the scene below which it has none there."""
+
+
+def _acceleration(field: str, value: Any) -> tuple[float, float, float]:
+    """A vector, or its size along -z."""
+    if listed(value):
+        return vector(field, value)
+    return 0.0, 0.0, -number("gravity.acceleration", value, least=0.0)
+
+
+@checked(
+    volume="liquid.volume",
+    gravity=_acceleration,
+    hold="droplet.hold",
+    start=either(words(*STARTS), instance(Surface)),
+    penalty="solver.penalty",
+    penetration_tolerance="solver.penetration_tolerance",
+    contact_line=words(*CONTACT_LINES),
+)
+def sessile_droplet(
+    substrate: Solid | None,
+    *,
+    volume: float,
+    liquid: Liquid | None = None,
+    gravity: float | Sequence[float] = 0.0,
+    discretization: Discretization | None = None,
+    hold: str = "none",
+    start: Surface | str | None = None,
+    penalty: float | None = None,
+    penetration_tolerance: float = 1e-2,
+    contact_line: str = "auto",
+    particles: Sequence[Sphere] = (),
+    membrane: WholeMembrane | None = None,
+) -> Scene:
+    """Droplet of a volume on a plane, on top of a sphere, on asperities, or free.
+
+    Below 180 degrees it has a contact line; at 180 its foot is a contact area and the whole skin is
+    one closed membrane. On asperities below 180 degrees that membrane passes through them, with a
+    contact line on each.
+
+    Parameters
+    ----------
+    substrate : the solid with its contact angle: ``Plane``, ``Sphere``, ``SphereLattice``,
+        ``Spheres``, or any ``Solid`` of your own at 180 degrees; None for a droplet about the
+        origin that touches nothing but a particle, or one that bridges two wherever they are.
+    volume : of liquid, > 0.
+    liquid : surface tension and density; both 1 by default.
+    gravity : acceleration >= 0 along -z, or a vector.
+    discretization : space, degree, elements, model.
+    hold : "none", or the axes (of the plane's frame) along which a uniform body force holds the
+        centroid: "x", "xy", "xyz"; of a free droplet "none" or "xyz".
+    start : a surface of the same space to start from, in world coordinates; at 180 degrees also
+        "flat", the drop on a plane through the tops, "touching" or "above", a sphere.
+    penalty : None for exact contact, else the paper's penalty (eq. 24): traction over depth in
+        units of tension over squared length, length that of a ball of the volume.
+    penetration_tolerance : depth over the radius of the smallest sphere (plane: over the length)
+        that exact contact leaves at most and beyond which a state is no success.
+    contact_line : "conforming", the membrane ends on it (planes, spheres, one particle beside a
+        plane); "trimmed", it passes through the sphere, the asperities or the particles;
+        "adhesion", it lies on asperities that attract it, for angles near 180 degrees; "auto"
+        chooses: on one fixed particle the membrane ends, and where that fails passes through it.
+    particles : spheres on its surface, with contact angles, densities and motions.
+    membrane : the paper's formulation, with its own penalty, instead of a contact line as the
+        membrane's edge; on a plane, below 180 degrees.
+
+    Raises
+    ------
+    SceneError
+        A value out of its range; a model with a mirror plane that gravity or the substrate does not
+        have; a start below the substrate.
+    """
+    liquid, asked = with_defaults(liquid, discretization)
+    grains = check_particles(particles)
+    asked_substrate, beside = substrate, fixed(grains)
+    if substrate is None:
+        # its particle carries it
+        substrate, beside = seat_of(grains, hold), ()
+    check_fixed(substrate)
+    acceleration = np.array(gravity)
+    length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
+    ends = ends_of(asked_substrate, grains, contact_line, length)
+    if ends is not None:
+        origin, axes = frame_between(ends)
+    else:
+        origin, axes = _frame(substrate, free=asked_substrate is None)
+    local = acceleration @ axes
+    # a scene that is turned as a whole leans by rounding
+    local[np.abs(local) <= ROUNDING * np.abs(local).max()] = 0.0
+    others: list[str] = []
+    if ends is None and (grains or penalty is not None or start is not None):
+        contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
+    elif ends is None:
+        pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
+        contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
+    x, y, z = (tuple(float(a) for a in row) for row in axes)
+    scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
+    bond = _bond_numbers(volume, liquid, local, scale)
+    scale.local_solid(substrate)  # refuses sizes that it cannot hold
+    if is_own(substrate):
+        check_solid(substrate, origin, length)
+    across = float(np.linalg.norm(bond[:2]))
+    hangs = asked_substrate is None and ends is None and hold == "none"
+    if hangs and across > 1e-9 * np.linalg.norm(bond):
+        raise SceneError(
+            "gravity.direction: a free droplet hangs on its particle along gravity, here they "
+            'differ; move the particle, or hold the droplet by droplet.hold = "xyz"'
+        )
+    terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
+    if bond.any():
+        gx, gy, gz = (float(g) for g in acceleration)
+        terms.append(Gravity(liquid.density, (gx, gy, gz)))
+    law = Contact(
+        substrate,
+        None if penalty is None else penalty * liquid.surface_tension / length**2,
+        penetration_tolerance,
+    )
+    held = "" if hold == "none" else hold
+    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, beside, held)
+    if ends is not None:
+        built = bridge(parts, ends)
+    else:
+        built = with_particles(parts) if beside else foot_of(parts)
+    sector = built.sector
+    movable = "".join(axis for axis in "xyz" if axis not in sector.mirrored)
+    pinned = movable.strip("z") if isinstance(substrate, Plane) and not grains else ""
+    terms += [Centroid(axis) for axis in movable if axis in pinned or axis in held]
+    pull = float(np.linalg.norm(acceleration))
+
+    def again(**changed: Any) -> Scene:
+        given: dict[str, Any] = {
+            "substrate": asked_substrate,
+            "volume": volume,
+            "liquid": liquid,
+            "gravity": [float(g) for g in acceleration],
+            "discretization": replace(asked, model=sector.model),
+            "hold": hold,
+            "contact_line": contact_line,
+            "particles": fixed(grains),
+            "penalty": penalty,
+            "penetration_tolerance": penetration_tolerance,
+        }
+        return sessile_droplet(**given | changed)
+
+    def at(size: float) -> Scene:
+        return again(gravity=[size / pull * g for g in acceleration])
+
+    def moved(displacement: float) -> Sphere:
+        return at_displacement(grains[0], length, displacement)
+
+    # at 180 degrees on a plane there is nothing to start from without gravity
+    has_way = (
+        isinstance(substrate, Sphere)
+        or contact_line == "conforming"
+        or (isinstance(substrate, Plane) and substrate.contact_angle < 180.0)
+    )
+    described = described_droplet(asked_substrate, volume, liquid, acceleration, hold, grains)
+    ramp = None
+    if ends is not None and (gap := gap_between(ends)) > (near := CLOSE * length):
+        ramp = Ramp(
+            "gap", (near, gap), lambda gap: again(particles=[*grains[:-1], at_gap(ends, gap)])
+        )
+    elif bond.any() and has_way:
+        ramp = Ramp("gravity.acceleration", (0.0, pull), at)
+    elif asked_substrate is None and held:
+        values = (0.0, pulled_by(grains[0], length))
+        ramp = Ramp("particle[0] displacement", values, lambda d: again(particles=[moved(d)]))
+    scene = Scene(
+        built.surface,
+        [*terms, *built.terms],
+        [*built.supports, sector],
+        scale=scale,
+        grading=built.grading,
+        directions=built.directions,
+        ramp=ramp,
+        substrate=substrate,
+        particles=fixed(grains),
+        acceleration=vector("gravity", acceleration),
+        liquid_density=liquid.density,
+        hold=held,
+        kind="sessile_droplet",
+        description=described | {"discretization": built.mesh.described(sector.model)},
+        warnings=hints(substrate, liquid, volume, pull, tuple(bond)),
+    )
+    if membrane is not None:
+        return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
+    if ends is not None or asked_substrate is None:
+        toward = (
+            axes[:, 2] * ([[1.0], [-1.0]] if asked_substrate is None else [[-1.0]])[: len(grains)]
+        )
+        gamma = liquid.surface_tension
+        return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+    if others:
+        # a mesh that was chosen for one asperity says nothing of another's discretization
+        mesh = asked if grains else Discretization()
+        scene = replace(scene, otherwise=lambda: again(contact_line=others[0], discretization=mesh))
+    if grains:
+        line, gamma = built.terms[-1], liquid.surface_tension
+        if built.alone is None:
+            alone = again(
+                particles=(), hold="none", discretization=Discretization(), contact_line="auto"
+            )
+        else:
+            # it must not roll away from its particles
+            bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
+            alone = from_another_angle(replace(scene, particles=(), origin=None), bare, built.alone)
+        scene = replace(scene, start_from=built.start_from)
+        scene = from_alone(scene, alone)
+        assert isinstance(line, (TrimmedContactLine, SphereContactLine))
+        toward = np.atleast_2d(np.array(line.toward))
+        return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+    if built.directions is not None and asked.elements is None and start is None:
+        twice = replace(asked, model=sector.model, elements=2 * built.mesh.elements)
+        scene = replace(scene, finer=lambda: again(discretization=twice))
+    if built.predictor:
+        return from_another_angle(scene, terms, built)
+    if not built.tangent:
+        return scene
+
+    def edge_at(of: Scene, radius: float) -> Surface:
+        return with_rim(of.surface, radius, of.units)
+
+    def foretold(of: Scene) -> Surface:
+        held = next((t.value for t in of.terms if isinstance(t, Volume)), volume)
+        weight = tuple(of.acceleration), of.liquid_density
+        own = tuple(float(g) for g in acceleration), liquid.density
+        if (held, weight) == (volume, own) or not any(weight[0]):
+            return of.surface
+        heavy = replace(liquid, density=of.liquid_density)
+        fresh = again(volume=held, gravity=of.acceleration, liquid=heavy)
+        return of.surface.moved(fresh.surface.points)
+
+    return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, foretold))
+
+
+def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:
+    """Origin and axes of the scene: on the plane, at the top of the sphere, or those of a free
+    droplet."""
+    if free:
+        assert isinstance(substrate, Sphere)
+        return (0.0, 0.0, 0.0), frame_of(substrate)
+    if isinstance(substrate, Plane):
+        return substrate.point, substrate.axes()
+    if not isinstance(substrate, Sphere):
+        return (0.0, 0.0, 0.0), np.eye(3)
+    x, y, z = substrate.center
+    return (x, y, z + substrate.radius), np.eye(3)
+
+
+def _bond_numbers(volume: float, liquid: Liquid, acceleration: Array, scale: Scale) -> Array:
+    """(3,) Bond numbers of an acceleration along the scene's axes."""
+    bond = liquid.density * acceleration * scale.length**2 / liquid.surface_tension
+    size = float(np.abs(bond).max())
+    if size and not 1.0 / ROOM < size < ROOM:
+        raise SceneError(
+            f"liquid.volume = {volume:g}, liquid.density = {liquid.density:g}, gravity = "
+            f"{acceleration.tolist()}, liquid.surface_tension = {liquid.surface_tension:g}: their "
+            f"Bond number {size:g} must be 0 or from {1.0 / ROOM:g} to {ROOM:g}; beyond it double "
+            "precision has no room; choose other units"
+        )
+    return np.asarray(bond)

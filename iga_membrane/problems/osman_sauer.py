@@ -1,0 +1,282 @@
+"""The paper's formulation: one membrane round the whole liquid, its wetted part included.
+
+The wetted part lies on the solid by a penalty (eq. 24) and has the tension gamma too, so
+``gamma_SL = gamma`` and ``gamma_SG = gamma (1 + cos(theta))``. The contact line is a line of
+continuity 0 inside the membrane under the load ``q_c`` of eqs (29)-(34). Control points have three
+unknowns and the stabilization of eq. (23), and the contact angle is reached in load steps.
+
+The innermost part of the wetted membrane, which lies on the solid in every step, is left out: the
+membrane ends on a fixed circle round the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..arguments import checked
+from ..arrays import Array
+from ..checks import integer
+from ..dofs.boundary_conditions import Fixed, Sector, Support
+from ..errors import SceneError
+from ..initial.liquid import Discretization, Liquid, Mesh, space_name
+from ..initial.profiles import Pancake, funnel, least_energy_pancake
+from ..solids import Plane, Sphere
+from ..splines import Grading, Space, points_of
+from ..surface.ring import circle, drop_space, meridian_interpolation, ring_space, square
+from ..surface.surface import Surface
+from ..terms import (
+    Contact,
+    NormalLineLoad,
+    PlaneContactLine,
+    Scale,
+    SphereContactLine,
+    Stabilization,
+    SurfaceTension,
+    Term,
+)
+from .scene import Ramp, Scene
+
+EASY = 150.0
+"""Contact angle of the first load step at most."""
+INNER = 0.4
+"""Radius of the fixed circle over that of the first contact line."""
+WET = 1.0 / 3.0
+"""Part of the elements along a meridian that lies on the solid."""
+
+
+@dataclass(frozen=True)
+@checked("solver", load_steps=partial(integer, least=1, most=100_000))
+class WholeMembrane:
+    """Choices of the paper's formulation.
+
+    Attributes
+    ----------
+    stabilization : ``mu / gamma`` of eq. (23), > 0; the paper's is 1.
+    projected : whether the stabilization acts along tangent planes only.
+    penalty : traction over depth, times the scene's length squared over gamma; the paper's is 1e4.
+    load_steps : equal steps of the contact angle, from 150 degrees (or the angle itself, if larger)
+        on; steps at the last angle follow until the stabilization has relaxed.
+    penetration_tolerance : depth over the sphere's radius (plane: over the length) beyond which a
+        state is no success.
+    """
+
+    stabilization: float = 1.0
+    projected: bool = False
+    penalty: float = 1e4
+    load_steps: int = 20
+    penetration_tolerance: float = 1e-2
+
+
+def sheet_with_wetted_part(
+    particle: Sphere,
+    size: float,
+    boundary: str,
+    liquid: Liquid,
+    gravity: float,
+    mesh: Mesh,
+    sector: Sector,
+    how: WholeMembrane,
+    description: Mapping[str, Any],
+) -> Scene:
+    """A sheet without pressure on a particle on its axis (figures 8-10 of the paper)."""
+    x, y, _ = particle.center
+    if x or y:
+        raise SceneError('solver.contact_line = "line_load": not available yet off the axis')
+    _check(mesh, sector, particle.contact_angle)
+    gamma = liquid.surface_tension
+    kink = _kink(mesh.elements)
+    space = ring_space(
+        mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=boundary == "square", kink=kink
+    )
+    first = Sphere(max(EASY, particle.contact_angle), particle.radius, particle.center)
+    surface = _sheet_start(space, first, 0.5 * size, boundary)
+
+    def line(angle: float) -> list[Term]:
+        at = replace(particle, contact_angle=angle)
+        edge = _edge(space)
+        wetting = SphereContactLine(gamma, at, edge, covered=True)
+        return [wetting, NormalLineLoad(gamma, at, edge)]
+
+    scale = Scale(particle.radius, gamma)
+    supports: list[Support] = [sector, Fixed("xi2=0"), Fixed("xi2=1")]
+    scene = Scene(
+        surface,
+        [*_skin(particle, gamma, scale, how), *line(first.contact_angle)],
+        supports,
+        scale=scale,
+        motion="cartesian",
+        substrate=particle,
+        kind="liquid_sheet",
+        acceleration=(0.0, 0.0, -gravity),
+        liquid_density=liquid.density,
+        description=_described(description, mesh, how),
+    )
+    return _stepped(scene, "particle[0].contact_angle", first, particle, line, how)
+
+
+def droplet_with_wetted_part(
+    scene: Scene,
+    asked: Discretization,
+    bond: float,
+    law: Contact,
+    start: object,
+    how: WholeMembrane,
+) -> Scene:
+    """The paper's formulation of a droplet on a level plane.
+
+    Parameters
+    ----------
+    scene : the same droplet with a contact line as its edge.
+    bond : Bond number of gravity towards the plane.
+    law, start : what else was asked for, of which there is nothing here.
+    """
+    plane = scene.substrate
+    if not isinstance(plane, Plane) or law.penalty is not None or start is not None:
+        raise SceneError(
+            'solver.contact_line = "line_load": not available yet on spheres, from a start, or '
+            "with a penalty besides its own"
+        )
+    mesh = asked.mesh(degree=3, elements=24)
+    _check(mesh, scene.sector, plane.contact_angle)
+    scale, gamma = scene.units, scene.units.tension
+    angle = max(EASY, plane.contact_angle)
+    pancake = least_energy_pancake(angle, bond, 4.0 * np.pi / 3.0)
+    kink = _kink(mesh.elements)
+    space = drop_space(mesh.space, mesh.degree, mesh.elements, kink=kink)
+    local = _droplet_start(space, pancake)
+    first = replace(plane, contact_angle=max(EASY, plane.contact_angle))
+
+    def line(angle: float) -> list[Term]:
+        edge = _edge(space)
+        wetting = PlaneContactLine(gamma, angle, edge, covered=True)
+        return [wetting, NormalLineLoad(gamma, replace(plane, contact_angle=angle), edge)]
+
+    kept = [t for t in scene.terms if t.name in ("volume", "gravity")]
+    whole = Scene(
+        local.moved(scale.to_world(local.points)),
+        [*_skin(plane, gamma, scale, how), *kept, *line(first.contact_angle)],
+        [scene.sector, Fixed("xi2=0")],
+        scale=scale,
+        motion="cartesian",
+        substrate=plane,
+        kind=scene.kind,
+        description=_described(scene.description, mesh, how),
+        warnings=scene.warnings,
+    )
+    return _stepped(whole, "substrate.contact_angle", first, plane, line, how)
+
+
+def _described(description: Mapping[str, Any], mesh: Mesh, how: WholeMembrane) -> dict[str, Any]:
+    """A description with the formulation's own mesh and solver table."""
+    model = description["discretization"]["model"]
+    solver = {
+        "motion": "cartesian",
+        "stabilization": how.stabilization,
+        "contact": "penalty",
+        "penalty": how.penalty,
+        "penetration_tolerance": how.penetration_tolerance,
+        "contact_line": "line_load",
+    }
+    return dict(description) | {"discretization": mesh.described(model), "solver": solver}
+
+
+def _check(mesh: Mesh, sector: Sector, contact_angle: float) -> None:
+    if contact_angle >= 180.0:
+        raise SceneError(
+            f"contact_angle = {contact_angle:g}: there is no contact line at 180 degrees, so no "
+            'solver.contact_line = "line_load"; choose an angle < 180'
+        )
+    if mesh.elements < 6:
+        raise SceneError(
+            f"discretization.elements = {mesh.elements}: a membrane with its wetted part needs >= 6"
+        )
+    if mesh.space != "bspline":
+        raise SceneError(
+            f'discretization.space = "{space_name(mesh.space)}": not available yet with '
+            'solver.contact_line = "line_load"; "bspline" is'
+        )
+    if sector.model not in ("quarter", "eighth"):
+        raise SceneError(
+            f'discretization.model = "{sector.model}": not available yet with solver.contact_line '
+            '= "line_load"; "quarter" and "eighth" are'
+        )
+
+
+def _skin(solid: Plane | Sphere, gamma: float, scale: Scale, how: WholeMembrane) -> list[Term]:
+    law = Contact(solid, how.penalty * gamma / scale.length**2, how.penetration_tolerance)
+    mu = how.stabilization * gamma
+    return [SurfaceTension(gamma), law, Stabilization(mu, how.projected)]
+
+
+def _stepped(
+    scene: Scene,
+    parameter: str,
+    first: Plane | Sphere,
+    solid: Plane | Sphere,
+    line: Any,
+    how: WholeMembrane,
+) -> Scene:
+    """The scene at its own angle, with the steps to it as its ramp."""
+    held = scene.terms[: len(scene.terms) - len(line(EASY))]
+
+    def at(angle: float) -> Scene:
+        return replace(scene, terms=[*held, *line(angle)], ramp=None, origin=None)
+
+    angles = np.linspace(first.contact_angle, solid.contact_angle, how.load_steps + 1)
+    values = tuple(float(a) for a in angles)
+    return replace(at(solid.contact_angle), ramp=Ramp(parameter, values, at))
+
+
+def _kink(elements: int) -> int:
+    """The element at whose start the contact line lies."""
+    return max(2, round(WET * elements))
+
+
+def _edge(space: Space) -> str:
+    return f"xi2={space.bases[1].joints[0]!r}"
+
+
+def _sheet_start(space: Space, particle: Sphere, half: float, boundary: str) -> Surface:
+    """A cap of the sphere from the fixed circle to the line, a funnel from there to the rim."""
+    profile = funnel(particle, half, 0.0)
+    points, matrix = meridian_interpolation(space)
+    kink = space.bases[1].joints[0]
+    on_solid = points <= kink
+    polar = profile.polar * (INNER + (1.0 - INNER) * np.minimum(points / kink, 1.0))
+    rate = np.log(profile.rim / profile.edge)
+    part = Grading(float(rate / np.expm1(rate))).fraction(
+        np.maximum(points - kink, 0.0) / (1 - kink)
+    )
+    radius = profile.edge + (profile.rim - profile.edge) * part
+    top = particle.center[2] / particle.radius
+    height = np.where(on_solid, top + np.cos(polar), profile.height(radius))
+    inward = np.where(on_solid, np.sin(polar), profile.edge * (1.0 - part))
+    outward = np.where(on_solid, 0.0, part)
+    values = np.stack([inward, outward, height], axis=1)
+    first, second, sag = np.linalg.solve(matrix, values).T[:, :, None]
+    ring = circle(space.bases[0])
+    outer = half * (ring if boundary == "circle" else square(space.bases[0]))
+    r, up = particle.radius, np.array([0.0, 0.0, 1.0])
+    net = r * ring[:, None] * first + outer[:, None] * second + r * sag * up
+    return Surface(space, points_of(space, net))
+
+
+def _droplet_start(space: Space, pancake: Pancake) -> Surface:
+    """A ring on the plane from the fixed circle to the line, a rounded pancake from there on."""
+    points, matrix = meridian_interpolation(space)
+    kink = space.bases[1].joints[0]
+    on_solid = points <= kink
+    r, z = pancake(np.maximum(points - kink, 0.0) / (1.0 - kink))
+    r = np.where(on_solid, r[0] * (INNER + (1.0 - INNER) * np.minimum(points / kink, 1.0)), r)
+    values = np.stack([r, np.where(on_solid, 0.0, z)], axis=1)
+    # at the pole the last value but one is the slope there
+    values[-2] = -pancake.length / (1.0 - kink), 0.0
+    r, z = np.linalg.solve(matrix, values).T
+    ring: Array = circle(space.bases[0])
+    net = ring[:, None] * r[:, None] + np.outer(z, [0.0, 0.0, 1.0])
+    return Surface(space, points_of(space, net))

@@ -1,0 +1,313 @@
+"""A scene: a surface, what it pays for, how it may move. Data only; nothing here solves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..arguments import checked
+from ..arrays import Array
+from ..checks import array, record, words
+from ..dofs.boundary_conditions import Fixed, Sector, Sliding, Support, Symmetry
+from ..errors import SceneError
+from ..solids import Plane, Solid, Sphere
+from ..splines import Grading
+from ..surface.surface import Surface
+from ..terms import (
+    BodyTerm,
+    Constraint,
+    Contact,
+    PlaneContactLine,
+    Scale,
+    SphereContactLine,
+    SurfaceTension,
+    Term,
+    TrimmedContactLine,
+)
+from ..terms.own import scaled_term
+from .changed import Origin, adapted, origin_of
+from .well_posed import check_mirrors, check_parts
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A way to a scene: scenes of one space along a parameter.
+
+    Attributes
+    ----------
+    parameter : its path in the scene file, "gravity.acceleration".
+    values : what it is at equal parts of the load, from 0 to 1.
+    scene_at : value of the parameter to the scene.
+    asked : whether the user wants the way itself, not only its end: no direct solve is tried.
+    only : whether a direct solve is known to fail.
+    bound : value from which on a balance of forces known in closed form rules out every
+        equilibrium, or None.
+    """
+
+    parameter: str
+    values: tuple[float, ...]
+    scene_at: Callable[[float], Scene] = field(repr=False)
+    asked: bool = False
+    only: bool = False
+    bound: float | None = None
+
+    @property
+    def stops(self) -> Array:
+        """Loads of the values; load steps end there."""
+        return np.linspace(0.0, 1.0, len(self.values))
+
+    def value(self, load: float) -> float:
+        """The parameter at a load in [0, 1]."""
+        return float(np.interp(load, self.stops, self.values))
+
+    def short_of_bound(self, load: float) -> float:
+        """Distance of the value at a load from the bound, over it; infinite without one."""
+        return np.inf if self.bound is None else 1.0 - self.value(load) / self.bound
+
+    def load_at_bound(self, after: float) -> float:
+        """The first load after another at which the value is the bound, which it passes."""
+        assert self.bound is not None
+        stops = self.stops[self.stops > after]
+        loads = np.concatenate([[after], stops])
+        values = [self.value(load) for load in loads]
+        first = int(np.argmax(np.array(values) >= self.bound))
+        before = values[first - 1]
+        part = (self.bound - before) / (values[first] - before)
+        return float(loads[first - 1] + part * (loads[first] - loads[first - 1]))
+
+    def __call__(self, load: float) -> Scene:
+        value = self.value(load)
+        scene = self.scene_at(value)
+        record(f"scene_at({value:g})", scene, Scene)
+        return scene
+
+
+@dataclass(frozen=True)
+class FreeEdge:
+    """An edge at 180 degrees: the membrane leaves a smooth solid tangentially, at a place to be
+    found.
+
+    Attributes
+    ----------
+    surface_at : a scene and a coordinate of the edge on its solid, a radius or an angle, to a start
+        whose edge is there.
+    place_of : the coordinate of a surface's edge, in the scene's scale.
+    foretold : a scene to its start, with the edge where its own weight and volume foretell it.
+    """
+
+    surface_at: Callable[[Scene, float], Surface] = field(repr=False)
+    place_of: Callable[[Surface], float] = field(repr=False)
+    foretold: Callable[[Scene], Surface] = field(repr=False)
+
+    def fixed_at(self, scene: Scene, place: float) -> Scene:
+        """A scene with its edge at another place."""
+        return replace(scene, surface=self.surface_at(scene, place))
+
+
+@dataclass(frozen=True)
+class FreeParticles:
+    """Particles that move along lines until the forces along them vanish.
+
+    Attributes
+    ----------
+    which : (k,) their numbers.
+    lines : (k, 3) unit vectors; radii : (k,) of the particles; tension : of the liquid.
+    outward : (k,) part of the direction out of the liquid along each line.
+    least : (k,) displacement at which the substrate stops a particle, -inf without.
+    scene_at : displacements (k,) along the lines to the scene with its particles fixed there.
+    """
+
+    which: Array
+    lines: Array
+    radii: Array
+    tension: float
+    outward: Array
+    least: Array
+    scene_at: Callable[[Array], Scene] = field(repr=False)
+
+
+@dataclass(frozen=True)
+@checked(
+    directions=partial(array, shape=(None, 3)),
+    motion="solver.motion",
+    hold=words("", "x", "xy", "xyz"),
+    liquid_density="liquid.density",
+)
+class Scene:
+    """Everything a solve needs to know.
+
+    Attributes
+    ----------
+    surface : the start, in world coordinates and the user's units.
+    terms : what the membrane pays for; a term that is not listed costs nothing.
+    supports : how edges and symmetry restrict the motion.
+    scale : units and frame of the computation; by default the surface's size and the tension.
+        Sliding edges lie in z = 0 of its frame.
+    grading : spread of the control points along the meridians; None leaves them where they are.
+    directions : (count, 3) in which the control points move, the same at every step; if None the
+        normals of the current surface.
+    motion : "spines", one unknown per control point, or "cartesian", three, which needs a
+        Stabilization.
+    ramp : the way to this scene if a direct solve fails.
+    predictor : a scene whose equilibrium is near this one's; contact lines inside the membrane
+        start from it.
+    start_from : that equilibrium's surface to one of this scene's space, both in their scales, if
+        the spaces differ.
+    otherwise : the same question in another discretization, tried where this one fails.
+    finer : the same question on a finer mesh, tried where the audit finds this one too coarse.
+    free_edge : the way to find a fixed edge's place at 180 degrees.
+    free_particles : those that move.
+    substrate : the solid that the membrane touches, for its kind and pictures.
+    particles : spheres on which it pulls too.
+    hold : axes along which the user asked for the centroid to be held.
+    acceleration : world vector that weighs particles and the liquid on them.
+    liquid_density : of that liquid.
+    kind : name of the family, which decides the measures of a solution.
+    description : the scene in words of the scene file, for the result.
+    warnings : what a user should know about the input.
+    origin : what the ways were made for; None makes them this scene's own. A scene of which fields
+        were replaced leaves out the ways of the one before (:mod:`.changed`).
+    """
+
+    surface: Surface
+    terms: Sequence[Term]
+    supports: Sequence[Support] = ()
+    scale: Scale | None = None
+    grading: Grading | None = field(default_factory=Grading)
+    directions: Array | None = field(default=None, repr=False)
+    motion: str = "spines"
+    ramp: Ramp | None = field(default=None, repr=False)
+    predictor: Scene | None = field(default=None, repr=False)
+    start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
+    otherwise: Callable[[], Scene] | None = field(default=None, repr=False)
+    finer: Callable[[], Scene] | None = field(default=None, repr=False)
+    free_edge: FreeEdge | None = field(default=None, repr=False)
+    free_particles: FreeParticles | None = field(default=None, repr=False)
+    substrate: Solid | None = None
+    particles: Sequence[Sphere] = ()
+    hold: str = ""
+    acceleration: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    liquid_density: float = 0.0
+    kind: str = "membrane"
+    description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    warnings: Sequence[str] = ()
+    origin: Origin | None = field(default=None, repr=False, compare=False, metadata={"kept": False})
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "terms", tuple(self.terms))
+        object.__setattr__(self, "supports", tuple(self.supports))
+        if self.origin is not None:
+            for name, value in adapted(self, self.origin).items():
+                object.__setattr__(self, name, value)
+        check_parts(self)
+        if self.scale is None:
+            tension = next(t.gamma for t in self.terms if isinstance(t, SurfaceTension))
+            object.__setattr__(self, "scale", Scale(self.surface.size, tension))
+        check_mirrors(self)
+        object.__setattr__(self, "origin", origin_of(self))
+
+    def bound(self, parameter: str) -> float | None:
+        """Value of a parameter from which on a balance of forces rules out every equilibrium, where
+        it is known."""
+        return (
+            self.ramp.bound if self.ramp is not None and self.ramp.parameter == parameter else None
+        )
+
+    @property
+    def line_inside(self) -> str | None:
+        """The line of a membrane that covers the wetted area too, where it leaves the solid."""
+        lines = (t for t in self.terms if isinstance(t, (PlaneContactLine, SphereContactLine)))
+        return next((t.edge for t in lines if t.covered), None)
+
+    @property
+    def lateral_load(self) -> dict[str, float]:
+        """Body force per volume along the axes x and y of the frame, where there is any
+        (dimensionless)."""
+        bodies = [
+            t.density().gradient
+            for t in self.local_terms()
+            if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
+        ]
+        x, y, z = (sum(parts) for parts in zip(*bodies, strict=True)) if bodies else (0, 0, 0)
+        noise = 1e-12 * (abs(x) + abs(y) + abs(z))
+        return {axis: -pull for axis, pull in (("x", x), ("y", y)) if abs(pull) > noise}
+
+    @property
+    def loose_axes(self) -> str:
+        """Axes along which the membrane is free to slide on a plane; particles hold it."""
+        ends_on_it = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
+        lies_on_it = any(isinstance(t, Contact) and isinstance(t.solid, Plane) for t in self.terms)
+        held = self.particles or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports)
+        if held or not (ends_on_it or lies_on_it):
+            return ""
+        return "".join(axis for axis in "xy" if axis not in self.sector.mirrored)
+
+    @property
+    def units(self) -> Scale:
+        """The scale, never None."""
+        assert self.scale is not None
+        return self.scale
+
+    @property
+    def free(self) -> bool:
+        """Whether the liquid touches nothing but particles, of which one is its substrate."""
+        return self.substrate in self.particles
+
+    @property
+    def up(self) -> Array:
+        """(3,) unit vector along which forces are normal: that of the substrate or of a level rim;
+        of a free droplet against gravity, or without any its frame's z."""
+        pull = np.array(self.acceleration) * self.free
+        size = float(np.linalg.norm(pull))
+        return -pull / size if size else self.units.axes[:, 2]
+
+    @property
+    def meridian_grading(self) -> Grading | None:
+        """The grading of a ring patch; other patches, and membranes that lie on a solid, keep
+        their parametrization."""
+        lying = any(isinstance(t, (Contact, TrimmedContactLine)) for t in self.terms)
+        regular = self.surface.space.bases[0].periodic and not lying
+        return self.grading if regular else None
+
+    @property
+    def sector(self) -> Sector:
+        """The part of a closed patch that is computed."""
+        return next((s for s in self.supports if isinstance(s, Sector)), Sector())
+
+    def local_surface(self) -> Surface:
+        """The start in the scene's scale and frame; sliding edges exactly in z = 0.
+
+        Raises
+        ------
+        SceneError
+            If a sliding edge lies off the plane.
+        """
+        points = self.units.to_local(self.surface.points)
+        for support in self.supports:
+            if isinstance(support, Sliding) and support.solid is None:
+                edge = self.surface.space.edge_functions(support.edge)
+                off = float(np.abs(points[edge, 2]).max())
+                if off > 1e-6:
+                    raise SceneError(
+                        f"surface: its sliding edge {support.edge} lies {off:g} lengths off the "
+                        "plane; start with the edge in the plane"
+                    )
+                points[edge, 2] = 0.0
+        return self.surface.moved(points)
+
+    def local_supports(self) -> tuple[Support, ...]:
+        """The supports in the scene's scale and frame."""
+        return tuple(
+            replace(s, solid=self.units.local_sphere(s.solid))
+            if isinstance(s, Sliding) and s.solid is not None
+            else s
+            for s in self.supports
+        )
+
+    def local_terms(self) -> tuple[Term, ...]:
+        """The terms in the scene's scale and frame."""
+        return tuple(scaled_term(term, self.units) for term in self.terms)

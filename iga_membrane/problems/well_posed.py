@@ -1,0 +1,165 @@
+"""What makes a scene a question with an answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..dofs.boundary_conditions import Fixed, Joint, Sliding, Symmetry
+from ..errors import SceneError
+from ..terms import (
+    Centroid,
+    GapTerm,
+    Gravity,
+    LineTerm,
+    LocalGap,
+    Stabilization,
+    TrimmedContactLine,
+    WettingLine,
+)
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+
+def check_parts(scene: Scene) -> None:
+    """Refuse parts that do not go together.
+
+    Raises
+    ------
+    SceneError
+    """
+    space = scene.surface.space
+    splines = any(basis.knots is not None for basis in space.bases)
+    if space.continuity < 1 and (splines or space.weights is not None):
+        raise SceneError("surface: C1 needed between the elements of a spline space")
+    names = [term.name for term in scene.terms]
+    for name in names:
+        if names.count(name) > 1 and name not in ("gravity", "wetting"):
+            raise SceneError(f'terms: "{name}" is listed {names.count(name)} times')
+    if "pressure" in names and "volume" in names:
+        raise SceneError("terms: pressure and volume are both prescribed; give one of them")
+    sliding = [s.edge for s in scene.supports if isinstance(s, Sliding)]
+    for term in scene.terms:
+        if isinstance(term, WettingLine) and term.edge in sliding and term.strength >= term.gamma:
+            raise SceneError(
+                "contact_angle = 180: a contact line that slides freely has no place at 180 "
+                "degrees, where the foot is a contact area; build the scene by "
+                "sessile_droplet or liquid_sheet, or hold the edge by Fixed"
+            )
+    if scene.directions is not None and len(scene.directions) != space.count:
+        raise SceneError(
+            f"directions: {len(scene.directions)} given, one for each of the {space.count} "
+            "control points is needed"
+        )
+    if (scene.motion == "cartesian") != any(isinstance(t, Stabilization) for t in scene.terms):
+        raise SceneError(
+            f'motion = "{scene.motion}": "cartesian" needs a Stabilization among the terms, '
+            '"spines" none'
+        )
+    near = scene.predictor
+    if near is not None and scene.start_from is None and near.surface.space.count != space.count:
+        raise SceneError(
+            "start_from: missing; the predictor has another space, so it must be given, or "
+            "predictor=None"
+        )
+    _check_gaps(scene)
+    if "surface_tension" not in names:
+        raise SceneError("terms: a membrane needs a SurfaceTension")
+    _check_weight(scene)
+
+
+def check_mirrors(scene: Scene) -> None:
+    """Refuse a model whose mirror planes the terms do not have."""
+    model, mirrored = scene.sector.model, scene.sector.mirrored
+    for term in scene.terms:
+        if isinstance(term, Centroid) and term.axis in mirrored:
+            raise SceneError(
+                f'terms: the "{model}" model is symmetric in {term.axis}; a Centroid along '
+                f"{term.axis} holds nothing there: leave it out or take a larger model"
+            )
+    for axis in mirrored:
+        if axis in scene.lateral_load:
+            raise SceneError(
+                f'discretization.model = "{model}": gravity leans to {axis}, so the scene has '
+                f'no such mirror plane; "{"half" if axis == "x" else "full"}" is the smallest '
+                "model here"
+            )
+    here = scene.units.to_local(scene.surface.points)
+    for term in scene.local_terms():
+        for k, axis in enumerate("xyz"):
+            if isinstance(term, LocalGap) and axis in mirrored:
+                there = here * np.where(np.arange(3) == k, -1.0, 1.0)
+                _check_mirror(scene, term, here, there, axis)
+        if isinstance(term, LocalGap) and model == "eighth":
+            _check_mirror(scene, term, here, here[:, [1, 0, 2]], "x = y")
+
+
+def _check_mirror(scene: Scene, term: LocalGap, here: Array, there: Array, plane: str) -> None:
+    """Refuse a law of the gap to a solid without a mirror plane of the model."""
+    off = np.abs(term.at(there).at.gap - term.at(here).at.gap).max()
+    if not off <= 1e-9:
+        raise SceneError(
+            f'terms: the solid of "{term.name}" has no mirror plane for {plane}, the '
+            f'"{scene.sector.model}" model has: take a larger model'
+        )
+
+
+def _check_gaps(scene: Scene) -> None:
+    """Refuse a law of the gap where its variations are not known."""
+    name = next((t.name for t in scene.terms if isinstance(t, GapTerm)), None)
+    if name is not None and scene.motion != "spines":
+        raise SceneError(f'terms: "{name}" needs motion = "spines"')
+    lines = [t.name for t in scene.terms if isinstance(t, (LineTerm, TrimmedContactLine))]
+    if name is not None and lines:
+        raise SceneError(
+            f'terms: "{name}" changes the tension at the contact line "{lines[0]}", which is '
+            "not available yet; a law of the gap needs fixed edges, or a membrane that lies on "
+            "its substrate (180 degrees)"
+        )
+
+
+def check_held(scene: Scene) -> None:
+    """Refuse an edge that nothing holds, from which a membrane retracts, and a membrane folded from
+    a square whose control points have no directions of their own: normals turn at its corners.
+
+    Raises
+    ------
+    SceneError
+    """
+    held = [s.edge for s in scene.supports if isinstance(s, (Fixed, Sliding))]
+    held += [edge for s in scene.supports if isinstance(s, Joint) for edge in s.edges]
+    walls = scene.directions is not None or any(isinstance(s, Symmetry) for s in scene.supports)
+    if scene.surface.space.shared is not None and scene.directions is None:
+        raise SceneError(
+            "directions: missing; the control points of a membrane that is folded from a square "
+            "need directions to move along"
+        )
+    loose = [edge for edge in scene.surface.space.open_edges if edge not in held]
+    if loose and not walls:
+        raise SceneError(
+            f"supports: nothing holds the membrane's edge {loose[0]}, from which it would "
+            "retract; give it Fixed, Sliding, or a Symmetry plane"
+        )
+
+
+def _check_weight(scene: Scene) -> None:
+    """Refuse a scene whose liquid and particles are weighed by two gravities."""
+    pulls = [
+        t.density_of_liquid * np.array(t.acceleration)
+        for t in scene.terms
+        if isinstance(t, Gravity)
+    ]
+    own = scene.liquid_density * np.array(scene.acceleration)
+    # a sheet may be computed without its liquid's weight
+    if not own.any() or (not pulls and scene.kind == "liquid_sheet"):
+        return
+    off = np.abs(sum(pulls, np.zeros(3)) - own).max()
+    if off > 1e-9 * np.abs(own).max():
+        raise SceneError(
+            "acceleration, liquid_density: they weigh the liquid by "
+            f"{own.tolist()} per volume, the terms otherwise; replace both, or the Gravity term "
+            "alone, which they follow"
+        )

@@ -1,0 +1,1 @@
+"""What is read off a state: areas, lines, angles, forces; nothing moves."""

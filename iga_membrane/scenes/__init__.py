@@ -1,1 +1,0 @@
-"""Scenes: what is asked, as data."""

@@ -1,1 +1,0 @@
-"""Solving: what changes the unknowns."""

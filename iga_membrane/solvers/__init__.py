@@ -1,0 +1,1 @@
+"""Solvers: what changes the unknowns until forces vanish."""

@@ -1,0 +1,391 @@
+"""Independent check of a state before it may be called a success.
+
+Nothing assembled by the solver is reused: doubled quadrature, the geometry of
+:mod:`iga_membrane.surface.kinematics`, and the weak form with dual tangents.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, TypeGuard
+
+import numpy as np
+
+from ..arrays import Array, Index
+from ..assembly.lagrangian import TINY
+from ..contact.obstacle import ContactSet
+from ..contact.subgrid import PointSupports
+from ..deadline import check_time
+from ..dofs.boundary_conditions import Fixed, Sector, Symmetry
+from ..dofs.spines import Motion
+from ..dofs.symmetry import sector_table
+from ..problems.scene import Scene
+from ..results.contact_line import ContactLine, contact_line, vertical_forces
+from ..results.measures import sphere_of
+from ..results.wetted_cap import WettedCap
+from ..solids import Sphere
+from ..splines import EdgeTable
+from ..surface.ring import rational_matrix
+from ..surface.surface import Surface
+from ..terms import (
+    AreaTerm,
+    BodyDensity,
+    LineTerm,
+    LocalGap,
+    NormalLineLoad,
+    Pressure,
+    SphereContactLine,
+    Term,
+    Volume,
+    WettingLine,
+)
+from .balance import Loads, line_balance
+from .evidence import Audit
+from .own_lines import nodal_forces, outward_pull
+
+NOTHING = 1e-2
+"""Weight over the forces of line and pressure on a sphere below which these are the measure."""
+AT_A_TIME = 100
+"""Elements that are checked at a time: so many fit a processor's cache."""
+
+
+def audit(
+    scene: Scene,
+    surface: Surface,
+    motion: Motion,
+    body: BodyDensity,
+    line_load: Array,
+    points: tuple[int, int],
+    contact: ContactSet | None = None,
+) -> Audit:
+    """Check a state.
+
+    Parameters
+    ----------
+    surface : in the scene's scale.
+    motion : the directions in which the residual is tested.
+    body : body density of the Lagrangian, so minus the pressure.
+    line_load : (count,) coefficients of the load with which a curved solid holds its edge.
+    points : the solver's Gauss points in each direction.
+    contact : of a membrane that lies on a solid, with its multipliers.
+    """
+    space, sector = surface.space, scene.sector
+    terms = scene.local_terms()
+    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+    total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
+    whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
+    laws = [term for term in terms if isinstance(term, LocalGap)]
+    loads, lowest = Loads(sector.copies), np.inf
+    for first in range(0, len(whole.functions), AT_A_TIME):
+        check_time()
+        table = whole.part(slice(first, first + AT_A_TIME))
+        k = surface.on(table)
+        area = k.area_element * table.weights
+        # int gamma a^alpha . u_,alpha dA + int e u . n dA: membrane and pressure
+        # and int f a^alpha . u_,alpha + f' grad(gap) . u dA: laws of the gap
+        gaps = [law.at(k.position) for law in laws]
+        taut = area * (tension + sum(law.value for law in gaps))
+        dual = taut[..., None, None] * k.dual_tangents
+        load = (density_at(body, k.position) * area)[..., None] * k.normal
+        pulled = area[..., None] * sum((law.pull for law in gaps), np.zeros(3))
+        load += pulled
+        loads.add(body, k.position, k.normal, area, pulled)
+        lowest = min([lowest, *(float(law.at.gap.min()) for law in gaps)])
+        force = (
+            table.d1.transpose(0, 2, 1) @ dual[..., 0, :]
+            + table.d2.transpose(0, 2, 1) @ dual[..., 1, :]
+            + table.values.transpose(0, 2, 1) @ load
+        )
+        scatter(total, absolute, motion, table.functions, force)
+    push = np.zeros(3)
+    if contact is not None:
+        carried = contact.push(contact.touch(surface.points))
+        push = sector.copies * carried.sum(axis=(0, 1))
+        pull = -contact.table.values.transpose(0, 2, 1) @ carried
+        scatter(total, absolute, motion, contact.table.functions, pull)
+    others = [float(push[2])] if contact is not None else []
+    for which, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
+        scatter(total, absolute, motion, which, edge_pull)
+        if scene.line_inside is not None:
+            others.append(-sector.copies * float(edge_pull[..., 2].sum()))
+    found = Audit(
+        relative_residual(total, absolute, tension),
+        missing_volume(terms, loads.inside),
+        line=line_balance(scene, surface, loads, tension, 2 * points[0], solids=others),
+    )
+    if contact is not None:
+        return replace(found, **_lying(scene, surface, body, loads, contact, others, points))
+    lines = [t for t in terms if isinstance(t, WettingLine)]
+    if not lines:
+        depth = max(0.0, -lowest) / surface.size if laws else None
+        return replace(found, penetration=depth)
+    return replace(found, **_ending(scene, surface, body, loads.inside, lines, points))
+
+
+def _lying(
+    scene: Scene,
+    surface: Surface,
+    body: BodyDensity,
+    loads: Loads,
+    contact: ContactSet,
+    others: list[float],
+    points: tuple[int, int],
+) -> dict[str, Any]:
+    """Defects of a membrane that lies on a solid.
+
+    Parameters
+    ----------
+    others : vertical forces on the membrane of the solid and of lines inside it.
+    """
+    found: dict[str, Any] = {}
+    if not isinstance(contact, PointSupports):
+        found["penetration"], found["deepest"] = _depth(surface, contact, points)
+        found["angle"] = _tilt(surface, contact)
+    if scene.line_inside is not None:
+        term = next(t for t in scene.local_terms() if isinstance(t, WettingLine))
+        line = contact_line(surface, scene.line_inside, 2 * points[0], sphere_of(scene))
+        found["angle"] = cosine_error(line, -term.strength / term.gamma - 1.0)
+    if is_hung(scene):
+        return found
+    size = max(abs(loads.push), abs(others[0]), TINY)
+    found["force"] = abs(loads.push + sum(others)) / size
+    sector = scene.sector
+    loose = [axis not in sector.mirrored for axis in "xy"]
+    if any(loose) and stands_free(scene):
+        push = contact.push(contact.touch(surface.points)).sum(axis=(0, 1))[:2]
+        aside = sector.copies * push - np.array(body.gradient[:2]) * loads.inside
+        found["sideways"] = float(np.hypot(*(aside * loose))) / size
+    return found
+
+
+def _ending(
+    scene: Scene,
+    surface: Surface,
+    body: BodyDensity,
+    inside: float,
+    lines: list[WettingLine],
+    points: tuple[int, int],
+) -> dict[str, Any]:
+    """Defects of a membrane that ends on solids.
+
+    Parameters
+    ----------
+    inside : volume behind the membrane alone.
+    """
+    sector = scene.sector
+    tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
+    found: dict[str, Any] = {}
+    cosine, sunk, pull, carried = 0.0, 0.0, np.zeros(3), 0.0
+    foot, on_spheres, standing = None, False, 90.0
+    for term in lines:
+        sphere = term.sphere if isinstance(term, SphereContactLine) else None
+        line = contact_line(surface, term.edge, 2 * points[0], sphere)
+        young = young_cosine(scene, surface, term, line)
+        angle = float(np.arccos(np.clip(young, -1.0, 1.0)))
+        cosine = max(cosine, cosine_error(line, young), key=abs)
+        gap, nearest = _nearest(surface, points, sector, sphere)
+        found.setdefault("deepest", nearest)
+        if not isinstance(term, SphereContactLine):
+            found["penetration"], foot, standing = max(0.0, -gap), line, float(np.degrees(angle))
+            continue
+        on_spheres = True
+        cap = WettedCap(line, term.sphere, term.toward)
+        inside -= cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
+        line_pull = _line_pull(cap, tension, angle)
+        pull += line_pull + cap.push(body)
+        carried += float(abs(line_pull[2]) + abs(cap.push(body)[2]))
+        away = float(np.abs(term.sphere.gap(line.position)).max())
+        sunk = max(sunk, away / term.sphere.radius, -gap / term.sphere.radius)
+    found["angle"] = cosine
+    if on_spheres:
+        found["indentation" if foot is not None else "penetration"] = sunk
+    found["volume"] = missing_volume(scene.local_terms(), inside)
+    if not stands_free(scene):
+        return found
+    weight = float(body.gradient[2] * inside)
+    if foot is None:
+        # of the weight, unless it is nothing beside what balances at the line
+        missing, size = weight + float(pull[2]), max(abs(weight), NOTHING * carried, TINY)
+    else:
+        forces = vertical_forces(foot, body, tension, standing)
+        missing = forces.push - forces.line - weight - float(pull[2])
+        size = abs(forces.push) + abs(forces.line) + abs(weight + float(pull[2]))
+    found["force"] = abs(missing) / size
+    loose = [axis not in sector.mirrored for axis in "xy"]
+    if any(loose):
+        aside = np.array(body.gradient[:2]) * inside + pull[:2]
+        found["sideways"] = float(np.hypot(*(aside * loose))) / size
+    return found
+
+
+def _tilt(surface: Surface, contact: ContactSet) -> float | None:
+    """Mean cosine between membrane and solid where they touch, less that of 180 degrees, on the
+    solid where it is worst; None where adhesion stands for an angle, or nothing touches."""
+    touch = contact.touch(surface.points)
+    load = touch.traction * contact.area
+    if contact.adhesion or not load.any():
+        return None
+    cosine = np.einsum("eqi,eqi->eq", surface.on(contact.table).normal, touch.at.normal)
+    _, place = np.unique(touch.at.which[load > 0], return_inverse=True)
+    on_each = [np.bincount(place, v[load > 0]) for v in (load * (cosine + 1.0), load)]
+    return float((on_each[0] / on_each[1]).max())
+
+
+def cosine_error(line: ContactLine, young: float) -> float:
+    """Mean cosine of the angle along a contact line, less Young's."""
+    return float(np.cos(line.angle) @ line.arc / line.arc.sum()) - young
+
+
+def relative_residual(total: Array, absolute: Array, tension: float) -> float | None:
+    """Norm of the weak form over that of its absolute contributions; None where nothing moves.
+
+    Parameters
+    ----------
+    total, absolute : (unknowns + 1,) sums and sums of sizes; the last entry is that of what is
+        held.
+    """
+    if len(total) == 1:
+        return None
+    size = max(float(np.linalg.norm(absolute[:-1])), TINY * tension)
+    return float(np.linalg.norm(total[:-1])) / size
+
+
+def pays_otherwise(term: Term) -> TypeGuard[LineTerm]:
+    """Whether a line pays for something else than wetting or what holds it on its solid."""
+    return isinstance(term, LineTerm) and not isinstance(term, (WettingLine, NormalLineLoad))
+
+
+def young_cosine(scene: Scene, surface: Surface, term: WettingLine, line: ContactLine) -> float:
+    """Mean cosine of the angle at which a contact line is in balance: Young's, and what other lines
+    along the same edge pull outwards."""
+    terms = scene.local_terms()
+    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+    normal = np.broadcast_to([0.0, 0.0, 1.0], line.position.shape)
+    if isinstance(term, SphereContactLine):
+        normal = term.sphere.normal(line.position)
+    along, _ = surface.space.edge_place(term.edge)
+    points = len(line.arc) // surface.space.bases[along].elements
+    pull = sum(
+        outward_pull(t, surface.space.edge_table(t.edge, points), surface, line, normal)
+        for t in terms
+        if pays_otherwise(t) and t.edge == term.edge
+    )
+    return -(term.strength + pull) / tension
+
+
+def _line_pull(cap: WettedCap, tension: float, angle: float) -> Array:
+    """(3,) force of the membrane on a sphere at an angle (radians): along
+    ``sin(theta) n + cos(theta) n x t``."""
+    line = cap.line
+    normal = cap.sphere.normal(line.position)
+    along = np.sin(angle) * normal + np.cos(angle) * np.cross(normal, line.tangent)
+    return np.asarray(tension * line.arc @ along)
+
+
+def edge_forces(
+    scene: Scene, surface: Surface, line_load: Array, points: int
+) -> Iterator[tuple[Index, Array]]:
+    """Control points (elements, local) and forces (elements, local, 3) on them of the lines at the
+    membrane's edges, with Gauss points along them."""
+    ring = np.arange(surface.space.bases[0].elements // scene.sector.copies)
+    for term in scene.local_terms():
+        if not isinstance(term, LineTerm):
+            continue
+        edge = surface.space.edge_table(term.edge, points, ring)
+        if pays_otherwise(term):
+            yield nodal_forces(term, edge, surface)
+            continue
+        tangent = edge.d @ surface.points[edge.functions]
+        x = edge.values @ surface.points[edge.functions]
+        if isinstance(term, NormalLineLoad):
+            yield edge.functions, _pressed(term, edge, x, tangent)
+            continue
+        up, turn = np.broadcast_to([0.0, 0.0, 1.0], x.shape), 1.0
+        if isinstance(term, SphereContactLine):
+            up, turn = term.sphere.normal(x), term.turn
+        load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
+        density = turn * term.strength * np.cross(tangent, up) - load[..., None] * up
+        pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
+        yield edge.functions, pull
+
+
+def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) -> Array:
+    """(elements, local, 3) nodal forces of the normal line load, with its part of the gap."""
+    speed = np.linalg.norm(tangent, axis=-1, keepdims=True)
+    load = term.strength * edge.weights[..., None]
+    at = term.solid.nearest(x)
+    return np.asarray(
+        edge.values.transpose(0, 2, 1) @ (load * speed * at.normal)
+        + edge.d.transpose(0, 2, 1) @ (load * at.gap[..., None] * tangent / speed)
+    )
+
+
+def missing_volume(terms: tuple[Term, ...], inside: float) -> float | None:
+    """Relative error of a prescribed volume; None where none is."""
+    held = next((t for t in terms if isinstance(t, Volume)), None)
+    return abs(inside - held.target) / held.value if held else None
+
+
+def stands_free(scene: Scene) -> bool:
+    """Whether nothing but the solid carries the liquid's weight."""
+    return not any(isinstance(t, Pressure) for t in scene.terms) and not is_hung(scene)
+
+
+def is_hung(scene: Scene) -> bool:
+    """Whether edges are held that no solid carries: an edge that leaves its solid at 180 degrees
+    is fixed where it does so by itself."""
+    tangent = {t.edge for t in scene.terms if isinstance(t, WettingLine) and t.strength >= t.gamma}
+    return any(
+        isinstance(s, Symmetry) or (isinstance(s, Fixed) and s.edge not in tangent)
+        for s in scene.supports
+    )
+
+
+Place = tuple[float, float, float]
+
+
+def _depth(
+    surface: Surface, contact: ContactSet, points: tuple[int, int]
+) -> tuple[float, Place | None]:
+    """Largest depth over the contact length, sampled four times denser than the quadrature, and
+    where the membrane is nearest to the solid."""
+    touch = contact.touch(surface.points)
+    near = np.flatnonzero((touch.at.gap < contact.length).any(axis=1))
+    lowest, place = np.inf, None
+    for some in np.array_split(contact.elements[near], max(1, len(near) // 500)):
+        dense = surface.space.table((4 * points[0], 4 * points[1]), some)
+        x = (dense.values @ surface.points[dense.functions]).reshape(-1, 3)
+        gap = contact.solid.nearest(x).gap
+        if gap.size and gap.min() < lowest:
+            lowest, place = float(gap.min()), _place(x[gap.argmin()])
+    return max(0.0, -lowest) / contact.length, place
+
+
+def _place(x: Array) -> Place:
+    return float(x[0]), float(x[1]), float(x[2])
+
+
+def density_at(body: BodyDensity, x: Array) -> Array:
+    return np.asarray(body.constant + x @ np.array(body.gradient))
+
+
+def scatter(total: Array, absolute: Array, motion: Motion, functions: Index, force: Array) -> None:
+    work = np.einsum("eai,eai->ea", force, motion.directions[functions])
+    where = motion.unknowns[functions]
+    np.add.at(total, where, work)
+    np.add.at(absolute, where, np.abs(work))
+
+
+def _nearest(
+    surface: Surface, points: tuple[int, int], sector: Sector, solid: Sphere | None
+) -> tuple[float, Place]:
+    """Smallest gap to the solid on a sampling four times denser than the quadrature, and where."""
+    one, two = surface.space.bases
+    n1 = 4 * points[0] * one.elements // sector.copies
+    s = np.linspace(one.breaks[0], one.breaks[-1], n1 * sector.copies + 1)[: n1 + 1]
+    t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points[1] * two.elements + 1)
+    lines = np.tensordot(one.matrix(s), surface.net, axes=1)
+    x = (rational_matrix(surface.space, t) @ lines).reshape(-1, 3)
+    gap = x[:, 2] if solid is None else solid.gap(x)
+    return float(gap.min()), _place(x[gap.argmin()])
