@@ -9,17 +9,17 @@ from pathlib import Path
 
 DOCS = Path(__file__).parent
 EXAMPLES = DOCS.parent / "examples"
-ROOMS = {
-    "scenes": "Scenes",
-    "solids": "Solids",
-    "terms": "Terms",
-    "solver": "Solving and solutions",
-    "analysis": "Studies",
-    "view": "Pictures and files",
-    "surface": "Surfaces, supports and motion",
-    "splines": "Spline spaces",
-    "units": "Units",
-    "errors": "Errors",
+TITLES = {
+    "Problems and scene files": ("problems", "initial", "io"),
+    "Solids": ("solids",),
+    "Terms": ("terms",),
+    "Solving and solutions": ("driver", "solvers", "results", "verification", "status"),
+    "Studies": ("analysis",),
+    "Pictures and files": ("view",),
+    "Surfaces and their motion": ("surface", "dofs"),
+    "Spline spaces": ("splines",),
+    "Units": ("units",),
+    "Errors": ("errors",),
 }
 
 
@@ -61,14 +61,15 @@ def write_gallery(folder: Path) -> None:
 def write_reference(folder: Path, homes: Mapping[str, Sequence[str]]) -> None:
     """All public names, room by room."""
     folder.mkdir(exist_ok=True)
-    rooms: dict[str, list[str]] = {room: [] for room in ROOMS}
+    of_room: dict[str, list[str]] = {}
     for home, names in homes.items():
-        rooms[home.partition(".")[0]] += names
+        of_room.setdefault(home.partition(".")[0], []).extend(names)
     page = ["API reference", "=============", "", ".. currentmodule:: iga_membrane", ""]
-    for room, names in rooms.items():
-        title = ROOMS[room]
+    for title, rooms in TITLES.items():
+        names = [name for room in rooms for name in of_room.pop(room, [])]
         page += [title, "-" * len(title), "", ".. autosummary::", "   :toctree:", ""]
         page += [f"   {name}" for name in names] + [""]
+    assert not of_room, of_room
     _write(folder / "index.rst", "\n".join(page))
 
 

@@ -67,7 +67,7 @@ def test_an_output_that_cannot_be_written_exits_4_before_computing(scene, tmp_pa
     (tmp_path / "file").write_text("in the way")
     over = '[[over]]\nparameter = "substrate.contact_angle"\nvalues = [60, 90]\n'
     (tmp_path / "sweep.toml").write_text(scene.read_text() + over)
-    for name in ("cli.solve", "analysis.sweep.sweep", "solver.state.load"):
+    for name in ("cli.solve", "analysis.sweep.sweep", "driver.state.load"):
         monkeypatch.setattr(f"iga_membrane.{name}", lambda *a, **k: pytest.fail("computed"))
     out, started = str(tmp_path / "file" / "out"), time.process_time()
     assert main(["solve", str(scene), "--out", out]) == 4
@@ -306,7 +306,7 @@ def test_what_is_no_folder_exits_4_before_anything(scene, tmp_path, monkeypatch,
         return  # a picture may be drawn over a file
     monkeypatch.chdir(tmp_path)
     before = {p: p.read_bytes() for p in tmp_path.iterdir()}
-    for name in ("cli.solve", "analysis.sweep.sweep", "solver.state.load"):
+    for name in ("cli.solve", "analysis.sweep.sweep", "driver.state.load"):
         monkeypatch.setattr(f"iga_membrane.{name}", lambda *a, **k: pytest.fail("computed"))
     assert main([command, "scene.toml", "--out", out]) == 4
     assert {p: p.read_bytes() for p in tmp_path.iterdir()} == before

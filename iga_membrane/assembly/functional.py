@@ -8,7 +8,7 @@ from time import thread_time
 import numpy as np
 
 from ..arrays import Array, Mask
-from ..contact.binding import contact_of, law_of, line_of, same_law, trim_of
+from ..contact.binding import model_of
 from ..contact.edge_lines import EdgeLines
 from ..deadline import check_time
 from ..dofs.boundary_conditions import Sliding, Support
@@ -16,13 +16,12 @@ from ..dofs.cartesian import Cartesian
 from ..dofs.dof_map import Rows
 from ..dofs.spines import Motion, Spines
 from ..dofs.symmetry import sector_table
-from ..errors import GeometryError
 from ..problems.scene import Scene
 from ..splines import Table
 from ..surface.surface import Surface
 from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LocalGap, Stabilization, gap
 from ..terms import variations as vary
-from .stabilizer import Stabilizer
+from .stabilizer import Stabilizer, Unstabilized
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,10 +78,8 @@ class Functional:
         self.seconds = 0.0
         self._ring = np.arange(ring.elements // sector.copies)
         self._space, self._start = space, surface
-        self._law = law_of(scene)
-        self.contact = contact_of(scene, surface, self.points)
-        self.trim = trim_of(scene, surface, self.table, self.spines.unknowns, self.size)
-        self.stabilizer: Stabilizer | None = None
+        self.contact = model_of(scene, surface, self.points, self.rows)
+        self.stabilizer = Unstabilized()
         self._kept: Motion | None = None
         self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
         self.load(scene)
@@ -118,54 +115,27 @@ class Functional:
         self.held = [t.density() for t in self.constraints]
         self._targets = np.array([t.target for t in self.constraints]) / self.copies
         self.edges = EdgeLines(scene, self._space, self.points[0], self._ring, self.rows)
-        self._load_solid(scene)
-
-    def _load_solid(self, scene: Scene) -> None:
-        """Take another scene's solid, its angles, its law of contact."""
-        law, line = law_of(scene), line_of(scene)
-        if (law is None) != (self.contact is None) or (line is None) != (self.trim is None):
-            raise GeometryError("this scene meets its solid in another way than the one before")
-        if self.trim is not None and line is not None:
-            self.trim.term = line
-            self.trim.forget()
-        if self.contact is not None and not same_law(law, self._law):
-            memory = self.contact.memory
-            self.contact = contact_of(scene, self._start, self.points)
-            assert self.contact is not None
-            self.contact.recall(memory)
-        self._law = law
-        self.contact_rows = self._contact_rows()
-
-    def _contact_rows(self) -> Table | None:
-        """The contact's table by rows of the motion; a penalty acts at the quadrature points."""
-        if self.contact is None:
-            return None
-        if isinstance(self.spines, Cartesian):
-            return self.rows.wide
-        return self.rows.with_shifts(self.contact.table)
+        self.contact = self.contact.again(
+            scene, lambda: model_of(scene, self._start, self.points, self.rows)
+        )
+        self.contact.by(self.rows)
 
     def anew(self, surface: Surface) -> Surface:
         """The start, as far away as the top of a surface has been shifted."""
         start = self.spines.anew(surface)
-        self.follow(start)
+        self.contact.follow(start)
         return start
-
-    def follow(self, surface: Surface) -> None:
-        """Find what is in contact in a mesh that has moved sideways."""
-        if self.contact is not None:
-            self.contact.follow(surface)
-            self.contact_rows = self._contact_rows()
 
     def begin_step(self, surface: Surface, term: Stabilization) -> None:
         """Let a load step of the paper's formulation start from a state: its metric is ``a_pre`` of
         eq. (23), and tractions of the penalty count per area of it."""
         normals = self.spines.on(surface).directions[: self._space.count].copy()
-        if self.contact is not None and self.edges.wetted:
+        if self.contact.lies and self.edges.wetted:
             # the contact line is a kink, which has no tangent plane
             normals[self._space.edge_functions(self.edges.wetted[0][0].edge)] = 0.0
-        self.stabilizer = Stabilizer(term, self.table, surface.points, normals)
-        if self.contact is not None:
-            self.contact.area = self.stabilizer.before.area
+        stabilizer = Stabilizer(term, self.table, surface.points, normals)
+        self.contact.begin_step(stabilizer.before.area)
+        self.stabilizer = stabilizer
 
     @property
     def multipliers(self) -> int:
@@ -202,26 +172,15 @@ class Functional:
         check_time()
         total, constraints = self.values(points, at)
         total += sum(gap.energy(self.table, at, law.at(at.x)) for law in self.gaps)
-        if self.contact is not None:
-            total += self.contact.energy(self.contact.touch(points))
-        if self.stabilizer is not None:
-            total += self.stabilizer.energy(points)
-        if self.trim is not None:
-            total += self.tension * self.trim.ties.energy(points)
-        true, counts = True, np.ones(len(at.c), bool)
-        if self.trim is not None:
-            true, counts = self.trim.true(points), self.trim.counts(points)
+        total += self.contact.energy(points) + self.contact.aids(points, self.tension)
+        total += self.stabilizer.energy(points)
+        true, counts = self.contact.true(points), self.contact.counts(points, len(at.c))
         lowest = float(at.x[counts, :, 2].min(initial=np.inf))
         return Energies(total, constraints, at.c, lowest, true, counts)
 
     def energy(self, surface: Surface) -> float:
         """Energy of the liquid and its contact, without what ties the control points."""
-        total = self.energies(surface).total
-        return (
-            total
-            if self.trim is None
-            else total - self.tension * self.trim.ties.energy(surface.points)
-        )
+        return self.energies(surface).total - self.contact.aids(surface.points, self.tension)
 
     def body_integral(self, surface: Surface, density: BodyDensity) -> float:
         """Integral of a density over the liquid of one sector, its part under the foot included."""
@@ -234,10 +193,8 @@ class Functional:
         points = surface.points
         at = vary.element_points(self.table, points)
         area = sum(vary.energies(rows, part, [])[0] for rows, part in self.parts(points, at))
-        if self.contact is not None and self.contact.adhesion:
-            return area, -self.contact.gained(points), 0.0
         energy, wet = self.edges.wetting(points)
-        inside = (0.0, 0.0) if self.trim is None else self.trim.wetting(points)
+        inside = self.contact.wetting(points)
         return area, energy + inside[0], wet + inside[1]
 
     def whole(self, vector: Array) -> Array:
@@ -248,11 +205,7 @@ class Functional:
         self, points: Array, at: vary.ElementPoints
     ) -> list[tuple[Table, vary.ElementPoints]]:
         """Tables by rows of the motion, and the geometry there, that make up the membrane."""
-        if self.trim is None:
-            return [(rows, at.part(elements)) for elements, rows in self.rows.groups]
-        outside = self.trim.outside(points)
-        whole, cut = (self.rows.shifted.weighted(outside.share), at), outside.area
-        return [whole, (cut, vary.element_points(cut, points))] if len(cut.functions) else [whole]
+        return self.contact.parts(points, at, self.rows)
 
     def values(self, points: Array, at: vary.ElementPoints) -> tuple[float, Array]:
         """Energy of the liquid, and the prescribed integrals minus their values."""
@@ -268,16 +221,12 @@ class Functional:
     ) -> Array:
         """Energy of the interface and the wetted surface, then the body integrals."""
         total = np.zeros(1 + len(bodies))
-        if self.trim is None:
-            area, integrals = vary.energies(self.table, at, bodies)
-            total[0], total[1:] = tension * area, integrals
-        else:
-            for rows, part in self.parts(points, at):
-                area, integrals = vary.energies(rows, part, bodies)
-                total[0] += tension * area
-                total[1:] += integrals
-            total[0] += self.trim.wetting(points)[0] if tension else 0.0
-            total[1:] += [self.trim.under(points, body) for body in bodies]
+        for rows, part in self.parts(points, at):
+            area, integrals = vary.energies(rows, part, bodies)
+            total[0] += tension * area
+            total[1:] += integrals
+        total[0] += self.contact.wetted(points) if tension else 0.0
+        total[1:] += [self.contact.under(points, body) for body in bodies]
         for term, edge in self.edges.lines:
             none = BodyDensity()
             total[0] += term.energy(edge, points, term.strength, none) if tension else 0.0

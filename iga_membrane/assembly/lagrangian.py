@@ -9,9 +9,7 @@ from time import thread_time
 import numpy as np
 
 from ..arrays import Array, Index
-from ..contact import unfitted_lines as inside_lines
 from ..deadline import check_time
-from ..dofs.cartesian import Cartesian
 from ..dofs.dof_map import FirstOrder, Released
 from ..dofs.spines import Motion
 from ..linalg.bordered import Matrix
@@ -53,8 +51,6 @@ class System:
         return np.asarray(self.gradient - self.constraint_gradients @ multipliers)
 
 
-STEADY = 0.5
-"""Part of the depth that a contact gives way, as the largest step before it is made harder."""
 TINY = 1e-12
 """Force over tension below which a residual is nothing: a flat sheet has no forces at all."""
 
@@ -66,7 +62,7 @@ class Assembly(Functional):
         super().__init__(scene, points)
         before = thread_time()
         self._kernels = None
-        if not isinstance(self.spines, Cartesian):
+        if not self.spines.by_pairs:
             self._kernels = vary.compiled_kernels(len(self.table.functions))
         if self._kernels is not None:
             self._kernels.warm_up()
@@ -75,67 +71,28 @@ class Assembly(Functional):
     @property
     def conservative(self) -> bool:
         """Whether all forces have an energy, so that descent can be asked for."""
-        return self.stabilizer is None or not self.stabilizer.projected
+        return not self.stabilizer.projected
 
     def largest(self, surface: Surface, displacement: Array) -> float:
         """Size of a displacement: of the control points', but of the membrane's own where it passes
         through solids, since some of its control points move it hardly at all."""
-        if self.trim is None:
-            moved = displacement
-        else:
-            rows = self.table.part(np.flatnonzero(self.trim.counts(surface.points)))
-            moved = rows.values @ displacement[rows.functions]
-        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0))
+        return self.contact.largest(self.table, surface.points, displacement)
 
     def near_contact(self, surface: Surface, displacement: Array) -> float:
         """Largest displacement over the contact length near the solid: of control points, or as in
         :meth:`largest`."""
-        if self.contact is not None:
-            moved, length = displacement[self.contact.near(surface.points)], self.contact.length
-        elif self.trim is not None:
-            rows = self.table.part(np.flatnonzero(self.trim.near(surface.points)))
-            moved, length = rows.values @ displacement[rows.functions], self.trim.length
-        else:
-            return 0.0
-        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0)) / length
+        return self.contact.near_contact(self.table, surface.points, displacement)
 
     def relaxed(self, surface: Surface, motion: Motion) -> Surface:
         """The same liquid; what lies inside a solid, and on which nothing depends, smoothed."""
-        if self.contact is not None:
-            self.contact.hold(surface.points)
-        if self.trim is None:
-            return surface
-        self.trim.hold(surface.points)
-        return surface.moved(self.extended(surface.points, motion))
+        self.contact.hold(surface.points)
+        points = self.contact.extended(surface.points, motion)
+        return surface if points is surface.points else surface.moved(points)
 
     def displacement(self, motion: Motion, step: Array) -> Array:
         """(count, 3) of the control points; those that nothing outside a solid depends on follow
         the others."""
-        return self.extended(motion.displacement(step), motion)
-
-    def extended(self, vectors: Array, motion: Motion) -> Array:
-        """Positions or displacements (count, 3) of the control points, those on which nothing
-        depends changed along a motion's directions until they follow the others."""
-        if self.trim is None:
-            return vectors
-        return self.trim.ties.extended(vectors, motion.directions[: len(vectors)])
-
-    @property
-    def rounds(self) -> int:
-        """How often the multipliers of contact have been updated."""
-        return 0 if self.contact is None else self.contact.rounds
-
-    def settled(self, surface: Surface, near: float) -> bool:
-        """Whether the multipliers of contact hold the gap; they are updated when the last step
-        ``near`` the solid (over the contact length) is small against what the contact still gives.
-        """
-        if self.contact is None or not self.contact.exact:
-            return True
-        touch = self.contact.touch(surface.points)
-        if near * self.contact.length <= STEADY * self.contact.give(touch):
-            self.contact.tighten(touch, surface.points)
-            return self.contact.settled
-        return False
+        return self.contact.extended(motion.displacement(step), motion)
 
     def system(self, surface: Surface, directions: Array, multipliers: Array) -> System:
         """Gradient, constraints and Hessian of a state along directions (rows, 3)."""
@@ -167,14 +124,8 @@ class Assembly(Functional):
                 total.add(gap.forces(rows, part, law.at(part.x)), rows.functions)
             for k, held in enumerate(self.held):
                 total.constrain(k, vary.forces(rows, part, 0.0, held), rows.functions)
-        if self.trim is not None:
-            inside_lines.add_forces(total, self.trim, points, self.tension, self.body, self.held)
-        if self.contact is not None and self.contact_rows is not None:
-            rows = self.contact_rows
-            push = self.contact.forces(self.contact.touch(points), rows)
-            total.add(push, rows.functions)
-        if self.stabilizer is not None:
-            total.add_nodal(self.stabilizer.forces(points), self.table.functions)
+        self.contact.add_forces(total, points, self.tension, self.body, self.held)
+        self.stabilizer.add_forces(total, points)
         self.edges.add_forces(total, points, self.body, self.held)
         return total
 
@@ -193,7 +144,7 @@ class Assembly(Functional):
         free.rows = Released(self.rows)
         free.spines = free.rows.spines
         free.edges = self.edges.by(free.rows)
-        free.trim = None if self.trim is None else self.trim.released()
+        free.contact = self.contact.released()
         return free
 
     def _second_order(
@@ -208,7 +159,7 @@ class Assembly(Functional):
         unknowns = self.rows.unknowns
         check_time()
         matrix = self.matrix()
-        if isinstance(self.spines, Cartesian):
+        if self.spines.by_pairs:
             self._add_by_pairs(matrix, points, directions, at, body)
         else:
             for rows, part in self.parts(points, at):
@@ -219,14 +170,7 @@ class Assembly(Functional):
                     blocks += gap.hessian(rows, part, law.at(part.x), along, self._kernels)
                 check_time()
                 matrix.add(unknowns(rows.functions), blocks)
-        if self.trim is not None:
-            inside_lines.add_hessian(
-                matrix, self.rows, self.trim, points, directions, self.tension, body
-            )
-        if self.contact is not None and self.contact_rows is not None:
-            rows = self.contact_rows
-            near, blocks = self.contact.hessian(self.contact.touch(points), directions, rows)
-            matrix.add(unknowns(rows.functions[near]), blocks)
+        self.contact.add_hessian(matrix, self.rows, points, directions, self.tension, body)
         self.edges.add_hessian(matrix, directions, points, body, load)
         return matrix
 
@@ -245,20 +189,15 @@ class Assembly(Functional):
             return pairs.liquid(table.weights[some], at.part(some), self.tension, body)
 
         numbers = pairs.hessian(table, liquid)
-        if self.stabilizer is not None:
-            held = self.stabilizer.hessian(points)
-            if self.stabilizer.projected:
-                along = self.stabilizer.tangential(directions, self.spines.points)
-                sums.add(matrix, held, along)
-            else:
-                numbers += held
+        owners = self.spines.points
+        self.stabilizer.add_hessian(numbers, matrix, sums, points, directions, owners)
         sums.add(matrix, numbers, directions)
 
     def mass(self, surface: Surface, directions: Array) -> Matrix:
         """Mass matrix of normal displacement; of all displacement where tangents move too."""
         at = vary.element_points(self.table, surface.points)
         matrix = self.matrix()
-        full = self.stabilizer is not None
+        full = self.stabilizer.tangential
         for rows, part in self.parts(surface.points, at):
             blocks = vary.mass(rows, part, directions[rows.functions], full=full)
             matrix.add(self.rows.unknowns(rows.functions), blocks)
@@ -266,5 +205,4 @@ class Assembly(Functional):
 
     def matrix(self) -> Matrix:
         """An empty matrix of the unknowns."""
-        tied = None if self.contact is None else self.contact.tied
-        return self.rows.matrix(tied if self.trim is None else self.trim.ties.across[0])
+        return self.rows.matrix(self.contact.tied)

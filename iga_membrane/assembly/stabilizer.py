@@ -5,13 +5,51 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array, Index
+from ..dofs.dof_map import FirstOrder
+from ..dofs.pair_sums import PairSums
+from ..linalg.bordered import Matrix
 from ..splines import Table
 from ..terms import Stabilization, pairs
 from ..terms import stabilization as stable
 from ..terms.variations import ElementPoints, element_points
 
 
-class Stabilizer:
+class Unstabilized:
+    """A membrane whose tangential motions need no holding.
+
+    Attributes
+    ----------
+    projected : whether forces are those that have no energy.
+    tangential : whether tangential motions are unknowns that must be held.
+    """
+
+    projected = tangential = False
+
+    def energy(self, points: Array) -> float:
+        """Energy of a state, of forces that are not projected."""
+        return 0.0
+
+    def add_forces(self, total: FirstOrder, points: Array) -> None:
+        """Add the derivatives by local control points, projected if asked for."""
+
+    def add_hessian(
+        self,
+        numbers: Array,
+        matrix: Matrix,
+        sums: PairSums,
+        points: Array,
+        directions: Array,
+        owners: Index,
+    ) -> None:
+        """Add the tangent to ``numbers`` (9, elements, pairs), or, projected, to the matrix.
+
+        Parameters
+        ----------
+        owners : (rows,) control points of the rows of the motion.
+        """
+
+
+class Stabilizer(Unstabilized):
     """Holds a membrane near the metric that it had at the end of the last load step.
 
     Projected, only the parts of its forces along the tangent planes at the control points act.
@@ -30,19 +68,38 @@ class Stabilizer:
     projected : whether the forces are projected.
     """
 
+    tangential = True
+
     def __init__(self, term: Stabilization, table: Table, points: Array, normals: Array) -> None:
         self._mu, self._table, self._normals = term.mu, table, normals
         self.projected = term.projected
         self.before = stable.PreviousMetric.of(table, element_points(table, points))
 
     def energy(self, points: Array) -> float:
-        """Energy of a state, of forces that are not projected."""
         return stable.energy(self._mu, self.before, self._at(points))
+
+    def add_forces(self, total: FirstOrder, points: Array) -> None:
+        total.add_nodal(self.forces(points), self._table.functions)
+
+    def add_hessian(
+        self,
+        numbers: Array,
+        matrix: Matrix,
+        sums: PairSums,
+        points: Array,
+        directions: Array,
+        owners: Index,
+    ) -> None:
+        held = self.hessian(points)
+        if self.projected:
+            sums.add(matrix, held, self.onto_planes(directions, owners))
+        else:
+            numbers += held
 
     def forces(self, points: Array) -> Array:
         """(elements, local, 3) derivative by local control points, projected if asked for."""
         full = stable.forces(self._mu, self._table, self.before, self._at(points))
-        return self.tangential(full, self._table.functions)
+        return self.onto_planes(full, self._table.functions)
 
     def hessian(self, points: Array) -> Array:
         """(9, elements, pairs) tangent before projection, as :func:`..terms.pairs.hessian`."""
@@ -52,7 +109,7 @@ class Stabilizer:
     def _at(self, points: Array) -> ElementPoints:
         return element_points(self._table, points)
 
-    def tangential(self, vectors: Array, points: Index) -> Array:
+    def onto_planes(self, vectors: Array, points: Index) -> Array:
         """Vectors (..., 3) at control points (...), projected if the forces are."""
         if not self.projected:
             return vectors

@@ -18,15 +18,25 @@ all quadrature points.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 
 from ..arrays import Array, Index
+from ..dofs.dof_map import FirstOrder, Rows
+from ..linalg.bordered import Matrix
+from ..problems.scene import Scene
 from ..solids import Nearest, Plane, Spheres
 from ..splines import Space, Table
 from ..surface.surface import Surface
-from ..terms import Contact
+from ..terms import BodyDensity, Contact
+from ..terms.variations import element_points
+from .laws import law_of, same_law
+from .model import ContactModel, another_way
+from .obstacle_patches import patches_of
+from .patches import ContactPatches, behind
 
 SOFT = 0.025
 """First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
@@ -47,6 +57,8 @@ HIGH = 4.0
 """Height above spheres, over the contact length, from which they are not searched."""
 POINTS = 6
 """Quadrature points in contact on every wet asperity, in the mean, that resolve its spot."""
+STEADY = 0.5
+"""Part of the depth that a contact gives way, as the largest step before it is made harder."""
 SETTLED = 1e-6
 """Gap of an active point over the contact length that counts as none."""
 LIES = 2e-4
@@ -75,8 +87,8 @@ class Touch:
     rise: Array
 
 
-class ContactSet:
-    """The contact of a membrane with one solid, on one sector.
+class Obstacle(ContactModel):
+    """The contact of a membrane that lies on a solid, on one sector.
 
     Parameters
     ----------
@@ -84,6 +96,7 @@ class ContactSet:
     table : functions of the membrane at the contact points.
     area : (elements, points) reference area of each contact point.
     space : of the membrane, and elements : (elements,) of it, to sample the depth.
+    rows : of the motion.
 
     Attributes
     ----------
@@ -91,6 +104,8 @@ class ContactSet:
     elements : (elements,) of the space.
     multipliers : (elements, points) tractions, >= 0.
     settled : whether the multipliers hold the gap; rounds : their updates so far.
+    asked : the law, in the scene's scale.
+    resolves : whether the mesh resolves what the membrane lies on.
     """
 
     def __init__(
@@ -100,9 +115,12 @@ class ContactSet:
         area: Array,
         space: Space,
         elements: Index,
+        rows: Rows,
     ) -> None:
         solid, penalty, adhesion = law.solid, law.penalty, law.adhesion
+        self.asked = law
         self.solid, self.table, self.area = solid, table, area
+        self.by(rows)
         self.elements = elements
         self._space, self._depth, self.adhesion = space, law.depth, adhesion
         self._compliance = law.compliance
@@ -126,15 +144,30 @@ class ContactSet:
         self.settled = not self.exact
         self.rounds = 0
 
-    @property
-    def law(self) -> str:
-        """In a word."""
-        return "multipliers" if self.exact and not self._compliance else "penalty"
+    lies = carries = True
+    resolves = True
+
+    def again(self, scene: Scene, made: Callable[[], ContactModel]) -> ContactModel:
+        law = law_of(scene)
+        if law is None:
+            raise another_way()
+        if same_law(law, self.asked):
+            return self
+        new = made()
+        new.recall(self.memory)
+        return new
+
+    def by(self, rows: Rows) -> None:
+        self._rows, self._by_rows = rows, rows.of(self.table)
 
     @property
-    def tied(self) -> Index | None:
-        """(k, local) functions that contact couples although no element has them all, or None."""
-        return None
+    def reach(self) -> float:  # type: ignore[override]
+        return self.length
+
+    @property
+    def law(self) -> str:  # type: ignore[override]
+        """In a word."""
+        return "multipliers" if self.exact and not self._compliance else "penalty"
 
     def leaving(self, which: Index, tension: float) -> Array:
         """Angles in radians at which the membrane leaves spheres, pi minus the contact angles."""
@@ -149,8 +182,8 @@ class ContactSet:
         """Take the :attr:`memory` of another contact of the same membrane."""
         self.multipliers = memory.copy()
 
-    def hold(self, points: Array) -> None:
-        """Take note of a state that steps lead away from; gaps have no memory."""
+    def begin_step(self, area: Array) -> None:
+        self.area = area
 
     def expect(self, points: Array, traction: float) -> None:
         """Begin with a traction wherever the membrane with these control points lies."""
@@ -159,8 +192,9 @@ class ContactSet:
                 self._nearest(points).gap <= LIES * self.length, traction, 0.0
             )
 
-    def begin(self) -> None:
+    def begin(self, surface: Surface) -> None:
         """Soft again and without lifts, from the multipliers at hand."""
+        self.follow(surface)
         self.rounds = 0
         if self.exact:
             self.delta, self.settled = self._soft, False
@@ -203,20 +237,23 @@ class ContactSet:
             getattr(at, name)[low] = getattr(near, name)
         return at
 
-    def gained(self, points: Array) -> float:
-        """Energy of adhesion that is gained (one sector)."""
-        return float(self.adhesion * (self.touch(points).gain * self.area).sum())
+    def wetting(self, points: Array) -> tuple[float, float]:
+        """Energy that adhesion gains, and no area inside lines."""
+        if not self.adhesion:
+            return 0.0, 0.0
+        return -float(self.adhesion * (self.touch(points).gain * self.area).sum()), 0.0
 
-    def follow(self, surface: Surface) -> None:
-        """Take note of a mesh that has moved sideways; gaps are measured wherever it is."""
+    def loads(self, points: Array) -> Iterator[tuple[Table, Array]]:
+        yield self.table, self.push(self.touch(points))
 
     def push(self, touch: Touch) -> Array:
         """(elements, points, 3) forces of the solid on the membrane."""
         load = (touch.traction - touch.pull) * self.area
         return np.asarray(load[..., None] * touch.at.normal)
 
-    def energy(self, touch: Touch) -> float:
+    def energy(self, points: Array) -> float:
         """Energy of the penalty or of the augmented Lagrangian."""
+        touch = self.touch(points)
         taken, known = touch.traction**2, self.multipliers**2
         square = self.delta * (taken - known) + self._compliance * taken
         held = 0.5 * (square * self.area).sum()
@@ -247,12 +284,53 @@ class ContactSet:
             blocks -= (across * load[..., None]).transpose(0, 2, 1) @ across
         return near, blocks
 
+    def add_forces(
+        self,
+        total: FirstOrder,
+        points: Array,
+        tension: float,
+        body: BodyDensity,
+        held: list[BodyDensity],
+    ) -> None:
+        rows = self._by_rows
+        total.add(self.forces(self.touch(points), rows), rows.functions)
+
+    def add_hessian(
+        self,
+        matrix: Matrix,
+        rows: Rows,
+        points: Array,
+        directions: Array,
+        tension: float,
+        body: BodyDensity,
+    ) -> None:
+        own = self._by_rows
+        near, blocks = self.hessian(self.touch(points), directions, own)
+        matrix.add(rows.unknowns(own.functions[near]), blocks)
+
+    def patches(
+        self, surface: Surface, images: list[Array], tension: float, body: BodyDensity
+    ) -> ContactPatches:
+        touch = self.touch(surface.points)
+        wet = (touch.traction > 0) | (touch.pull > 0)
+        x = (self.table.values @ surface.points[self.table.functions])[wet]
+        push = -self.push(touch)[wet]
+        at = touch.at.part(wet)
+        return patches_of(self.solid, at, x, push, self.leaving, images, tension, body)
+
+    def behind(self, table: Table, surface: Surface) -> Array:
+        at = element_points(table, surface.points)
+        return self.solid.center_of(behind(self.solid.nearest(at.x), at, 2.0 * self.length))
+
+    def reaches(self, base: float, table: Table, points: Array, which: Index) -> bool:
+        return bool((which < 0).any())
+
     def stiffness(self, touch: Touch) -> Array:
         """(elements, points) derivative of the traction by the depth."""
         return np.asarray((touch.traction > 0) / (self.delta + self._compliance) + touch.rise)
 
-    def objection(self, touch: Touch) -> str | None:
-        """Why the mesh is too coarse for this law, or None."""
+    def objection(self, points: Array) -> str | None:
+        touch = self.touch(points)
         across = self.across(touch)
         if across < ACROSS:
             return (
@@ -286,6 +364,19 @@ class ContactSet:
         """(k, local) functions of the elements near the solid."""
         close = (self.touch(points).at.gap < 2.0 * self.length).any(axis=1)
         return self.table.functions[close]
+
+    def near_contact(self, table: Table, points: Array, displacement: Array) -> float:
+        moved = displacement[self.near(points)]
+        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0)) / self.length
+
+    def settled_at(self, surface: Surface, near: float) -> bool:
+        if not self.exact:
+            return True
+        touch = self.touch(surface.points)
+        if near * self.length <= STEADY * self.give(touch):
+            self.tighten(touch, surface.points)
+            return self.settled
+        return False
 
     def tighten(self, touch: Touch, points: Array) -> None:
         """Take the tractions as multipliers and reduce ``delta``; lift points that dip too deep."""
@@ -321,3 +412,14 @@ class ContactSet:
         lifted = touch.at.gap[near] + depth - aim + sunk
         self._lift[near] = np.where(off, lifted, self._lift[near])
         return bool(off.any())
+
+
+class Covering(Obstacle):
+    """The paper's whole membrane: it lies on its solid, and a line inside it carries it too."""
+
+    carries = False
+
+
+def is_obstacle(model: ContactModel) -> TypeGuard[Obstacle]:
+    """Whether a model has a membrane that lies on its solid."""
+    return isinstance(model, Obstacle)

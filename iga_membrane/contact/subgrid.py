@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index
+from ..dofs.dof_map import Rows
 from ..dofs.symmetry import in_sector, mirrors
 from ..errors import GeometryError
 from ..problems.scene import Scene
@@ -23,7 +24,7 @@ from ..splines import Table
 from ..splines.point_load import effective_radius
 from ..surface.surface import Surface
 from ..terms import Contact, Ring
-from .obstacle import ContactSet, Touch
+from .obstacle import Obstacle, Touch
 
 WIDEST = 2.0
 """Radius of a spot over the effective radius up to which sags are right to 5 percent
@@ -56,16 +57,17 @@ class Supports:
     spacing: float
 
 
-class PointSupports(ContactSet):
+class PointSupports(Obstacle):
     """Contact of a membrane with many small asperities, each a point support.
 
     Parameters
     ----------
     scene : whose membrane it is.
-    solid, ring : asperities, and where they carry the membrane, in the scene's scale.
+    law : of contact, with its solid and ring, in the scene's scale.
+    solid, ring : asperities, and where they carry the membrane.
     start : surface whose mesh meets the asperities as long as its foot moves vertically only.
     tension : of the membrane.
-    elements : of the sector.
+    elements : of the sector; rows : of the motion.
 
     Attributes
     ----------
@@ -76,21 +78,25 @@ class PointSupports(ContactSet):
     def __init__(
         self,
         scene: Scene,
+        law: Contact,
         solid: Asperities,
         ring: Ring,
         start: Surface,
         tension: float,
         elements: Index,
+        rows: Rows,
     ) -> None:
         self._scene, self._tension, self._ring = scene, tension, ring
         supports = supports_of(scene, solid, ring.radius, start)
         area = supports.share[:, None]
-        super().__init__(Contact(solid, 1.0), supports.table, area, start.space, elements)
+        super().__init__(Contact(solid, 1.0), supports.table, area, start.space, elements, rows)
+        self.asked = law
         self._take(supports)
 
+    resolves = False
+
     @property
-    def law(self) -> str:
-        """In a word."""
+    def law(self) -> str:  # type: ignore[override]
         return "point supports"
 
     @property
@@ -113,6 +119,7 @@ class PointSupports(ContactSet):
     def _take(self, supports: Supports) -> None:
         assert isinstance(self.solid, (SphereLattice, Spheres))
         self.table, self.area = supports.table, supports.share[:, None]
+        self._by_rows = self._rows.of(self.table)
         self.length = supports.spacing
         self._which, self._reach = supports.which[:, None], supports.reach[:, None]
         self._radius = self.solid.radius_of(self._which)
@@ -161,9 +168,9 @@ class PointSupports(ContactSet):
         stiffness = np.where(wet, self._unit / self._radius * spots.stiffness, 0.0)
         return Touch(at, np.maximum(force, 0.0), -work, np.maximum(-force, 0.0), stiffness)
 
-    def energy(self, touch: Touch) -> float:
+    def energy(self, points: Array) -> float:
         """Work done on the spots."""
-        return -float((self.area * touch.gain).sum())
+        return -float((self.area * self.touch(points).gain).sum())
 
     def stiffness(self, touch: Touch) -> Array:
         """(k, 1) derivative of the force by the depth."""
@@ -178,8 +185,16 @@ class PointSupports(ContactSet):
         """Functions at all axes."""
         return self.table.functions
 
-    def objection(self, touch: Touch) -> str | None:
-        """Why the mesh does not do for this law, or None."""
+    def reaches(self, base: float, table: Table, points: Array, which: Index) -> bool:
+        return bool(((table.values @ points[table.functions])[..., 2] <= base).any())
+
+    def unsupported(self, table: Table, points: Array) -> Array:
+        at = self.solid.nearest(table.values @ points[table.functions])
+        met = np.setdiff1d(at.which[at.gap < 0.0], self.which)
+        return self.solid.center_of(met[met >= 0])
+
+    def objection(self, points: Array) -> str | None:
+        touch = self.touch(points)
         load = (touch.traction - touch.pull) / self._unit
         spot = self._spots.size(load) * self._radius
         wide = float((spot / self._reach)[touch.traction > 0.0].max(initial=0.0))

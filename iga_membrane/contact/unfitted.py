@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 
 from ..arrays import Array, Index, Mask
 from ..deadline import check_time
+from ..dofs.dof_map import FirstOrder, Rows
+from ..dofs.spines import Motion
+from ..linalg.bordered import Matrix
+from ..problems.scene import Scene
 from ..solids import Solid
 from ..splines import LineTable, Space, Table, cut, faces_between
 from ..surface.bezier import BezierPatches, bezier_net
 from ..surface.surface import Surface
 from ..terms import BodyDensity, TrimmedContactLine
 from ..terms.trimmed import CapDensity, Line, on_line, wet_integral
-from ..terms.variations import flux
+from ..terms.variations import ElementPoints, element_points, flux
 from .ghost_penalty import Ties
+from .laws import line_of
+from .model import ContactModel, another_way
+from .patches import ContactPatches, behind
+from .unfitted_lines import add_forces, add_hessian
+from .unfitted_patches import Spots, patches_of
 
 CORE = 0.65, 0.85
 """Least and largest part of a spot's radius inside which the membrane counts as deeper than it
@@ -48,7 +59,7 @@ class Outside:
     ends: LineTable
 
 
-class Trim:
+class Unfitted(ContactModel):
     """What lies outside the solid of a term, on one sector.
 
     Parameters
@@ -59,6 +70,9 @@ class Trim:
     element : size of the elements at the solid over the contact length.
     unknowns : (rows,) unknown of each control point, -1 for none; size : their number.
     """
+
+    passes = True
+    depth_allowed = 1e-3  # lines push it there: near 180 degrees an equilibrium dips by 2e-4
 
     def __init__(
         self,
@@ -81,20 +95,33 @@ class Trim:
         self._points = space.degree + EXTRA
         self._known: list[tuple[Array, Outside]] = []
         self._cores = np.zeros(0, int), np.zeros((0, 3)), np.zeros(0)
-        self.begin()
+        self._restart()
 
-    def released(self) -> Trim:
-        """The same without idle unknowns, for sums in which every row has its own."""
+    def released(self) -> Unfitted:
         free = copy(self)
         free.ties = copy(self.ties)
         free.ties.idle = np.zeros(0, int)
         return free
 
-    def forget(self) -> None:
-        """Cut anew: the solid may have changed."""
+    def again(self, scene: Scene, made: Callable[[], ContactModel]) -> ContactModel:
+        term = line_of(scene)
+        if term is None:
+            raise another_way()
+        self.term = term
         self._known.clear()
+        return self
 
-    def begin(self) -> None:
+    def begin(self, surface: Surface) -> None:
+        self._restart()
+        self.hold(surface.points)
+
+    def wetted(self, points: Array) -> float:
+        return self.wetting(points)[0]
+
+    def firm(self, factor: float) -> None:
+        self.ties.firmness = factor
+
+    def _restart(self) -> None:
         """Free to choose again what is tied; spots are where they were."""
         least = np.min(self.term.angles_of_substrate, initial=180.0)
         self.ties.begin(np.pi - np.radians(float(least)), self._element)
@@ -106,12 +133,18 @@ class Trim:
         return self.term.solid
 
     @property
-    def length(self) -> float:
-        """Over which contact changes."""
+    def length(self) -> float:  # type: ignore[override]
         return self.term.solid.scale
 
-    def counts(self, points: Array) -> Mask:
-        """(elements,) whether an element has a part outside."""
+    @property
+    def tied(self) -> Index:
+        return self.ties.across[0]
+
+    @property
+    def idle(self) -> Index:
+        return self.ties.idle
+
+    def counts(self, points: Array, elements: int) -> Mask:
         at = self.outside(points)
         return np.asarray(at.touched | (at.share > 0))
 
@@ -132,6 +165,79 @@ class Trim:
         """Geometry at the ends of their pieces."""
         return on_line(self.term, self.outside(points).ends, points)
 
+    def parts(
+        self, points: Array, at: ElementPoints, rows: Rows
+    ) -> list[tuple[Table, ElementPoints]]:
+        outside = self.outside(points)
+        whole, cut = (rows.shifted.weighted(outside.share), at), outside.area
+        return [whole, (cut, element_points(cut, points))] if len(cut.functions) else [whole]
+
+    def extended(self, vectors: Array, motion: Motion) -> Array:
+        return self.ties.extended(vectors, motion.directions[: len(vectors)])
+
+    def largest(self, table: Table, points: Array, displacement: Array) -> float:
+        """Size of a displacement: the membrane's own, since some of its control points move it
+        hardly at all."""
+        rows = table.part(np.flatnonzero(self.counts(points, len(self.elements))))
+        moved = rows.values @ displacement[rows.functions]
+        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0))
+
+    def near_contact(self, table: Table, points: Array, displacement: Array) -> float:
+        rows = table.part(np.flatnonzero(self.near(points)))
+        moved = rows.values @ displacement[rows.functions]
+        return float(np.linalg.norm(moved, axis=-1).max(initial=0.0)) / self.length
+
+    def aids(self, points: Array, tension: float) -> float:
+        return tension * self.ties.energy(points)
+
+    def add_forces(
+        self,
+        total: FirstOrder,
+        points: Array,
+        tension: float,
+        body: BodyDensity,
+        held: list[BodyDensity],
+    ) -> None:
+        add_forces(total, self, points, tension, body, held)
+
+    def add_hessian(
+        self,
+        matrix: Matrix,
+        rows: Rows,
+        points: Array,
+        directions: Array,
+        tension: float,
+        body: BodyDensity,
+    ) -> None:
+        add_hessian(matrix, rows, self, points, directions, tension, body)
+
+    def spots(self, surface: Surface, images: list[Array]) -> Spots:
+        """The wetted spots of a state."""
+        return Spots(self.on_line(surface.points), self.term, images)
+
+    def patches(
+        self, surface: Surface, images: list[Array], tension: float, body: BodyDensity
+    ) -> ContactPatches:
+        return patches_of(self.spots(surface, images), tension, body)
+
+    def on_substrate(self, which: Index) -> Mask:
+        return np.asarray(self.term.particle(which) < 0)
+
+    def without_line(self, which: Index, particles: int) -> list[int]:
+        own = set(self.term.particle(which).tolist())
+        return [k for k in range(particles) if k not in own]
+
+    def behind(self, table: Table, surface: Surface) -> Array:
+        at = element_points(table, surface.points)
+        lines = self.on_line(surface.points).at.which
+        which = behind(self.solid.nearest(at.x), at, 2.0 * self.length)
+        return self.solid.center_of(np.setdiff1d(which, lines))
+
+    def reaches(self, base: float, table: Table, points: Array, which: Index) -> bool:
+        """It does not notice the plane, so its height counts."""
+        x = (table.values @ points[table.functions])[self.outside(points).share > 0]
+        return bool((x[..., 2] <= base).any())
+
     def wetting(self, points: Array) -> tuple[float, float]:
         """Energy of the wetted surface and its area."""
         line, term = self.on_line(points), self.term
@@ -144,11 +250,10 @@ class Trim:
         return float(wet_integral(self.on_line(points, outside), self.term, density).sum())
 
     def under(self, points: Array, body: BodyDensity, outside: Outside | None = None) -> float:
-        """Part of a body integral that the flux through the wetted surface brings in."""
         return self.cap(points, lambda x, n, which: -flux(body, x) * n[..., 2], outside)
 
     def true(self, points: Array) -> bool:
-        """Whether the contact lines lie on the solid, not on the border of a spot's core."""
+        """Whether contact lines lie on the solid, not on the border of a spot's core."""
         gap = self.on_line(points).at.gap
         return bool((np.abs(gap) <= ON_LINE * self.length).all())
 
@@ -301,14 +406,21 @@ class Trim:
         return np.stack([self.space.bases[0].sizes[e1], self.space.bases[1].sizes[e2]], axis=1)
 
     def hold(self, points: Array) -> None:
-        """Choose what is tied and what is idle, for a state and the steps from it."""
+        """Choose what is tied and what is idle."""
         self._find_cores(points)
         middle = (self.table.values @ points[self.table.functions]).mean(axis=1)
         nearest = self.term.particle(self.term.solid.nearest(middle).which)
-        self.ties.hold(self.counts(points), self.outside(points).touched, nearest >= 0)
+        self.ties.hold(
+            self.counts(points, len(self.elements)), self.outside(points).touched, nearest >= 0
+        )
 
 
 def _across(vectors: Array, axes: Array) -> Array:
     """The part of vectors (..., 3) at right angles to unit axes."""
     along = np.einsum("...i,...i->...", vectors, axes)
     return np.asarray(vectors - along[..., None] * axes)
+
+
+def is_unfitted(model: ContactModel) -> TypeGuard[Unfitted]:
+    """Whether a model has contact lines inside the membrane."""
+    return isinstance(model, Unfitted)

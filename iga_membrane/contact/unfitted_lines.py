@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from ..arrays import Array
 from ..dofs.dof_map import FirstOrder, Rows
 from ..linalg.bordered import Matrix
 from ..terms import BodyDensity
-from ..terms.trimmed import end_hessian, line_forces, line_hessian
-from .unfitted import Trim
+from ..terms.trimmed import Line, end_hessian, line_forces, line_hessian
+from .ghost_penalty import Ties
+
+
+class Cut(Protocol):
+    """What is asked of a membrane that its solids cut."""
+
+    ties: Ties
+
+    def on_line(self, points: Array) -> Line: ...
+
+    def on_ends(self, points: Array) -> Line: ...
 
 
 def add_forces(
     total: FirstOrder,
-    trim: Trim,
+    trim: Cut,
     points: Array,
     tension: float,
     body: BodyDensity,
@@ -33,7 +45,7 @@ def add_forces(
 def add_hessian(
     matrix: Matrix,
     rows: Rows,
-    trim: Trim,
+    trim: Cut,
     points: Array,
     directions: Array,
     tension: float,

@@ -25,6 +25,8 @@ class Cartesian(Spines):
     in it; images across an odd number of planes turn the other way round the ring.
     """
 
+    by_pairs = True
+
     def __init__(self, surface: Surface, supports: tuple[Support, ...] = ()) -> None:
         super().__init__(surface, supports)
         space = surface.space

@@ -78,6 +78,10 @@ class Rows:
         rows = self.spines.spare + 1 + np.arange(len(self.spines.shifts))
         return table.with_field(self.spines.share, rows.tolist())
 
+    def of(self, table: Table) -> Table:
+        """A table of points of the sector's elements by rows of the motion."""
+        return self.wide if self.spines.by_pairs else self.with_shifts(table)
+
     @cached_property
     def shifted(self) -> Table:
         """The table of all elements :meth:`with_shifts`."""

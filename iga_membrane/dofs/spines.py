@@ -113,7 +113,11 @@ class Spines:
     second : (count,) the second row of each control point, or the spare row.
     held : (rows,) number of the gap constraint that belongs to a second row, else -1.
     extra : arrays (count,) of the rows of each control point after its first, or the spare row.
+    by_pairs : whether Hessians are summed by pairs of control points first, which have many
+        unknowns.
     """
+
+    by_pairs = False
 
     @checked(directions=partial(array, shape=(None, 3)))
     def __init__(

@@ -8,7 +8,7 @@ from ..arrays import Array, Mask
 from ..assembly.lagrangian import Assembly
 from ..problems.scene import Scene
 from ..results.contact_line import contact_line
-from ..results.contact_patches import contacts, engulfed, touches_base, unsupported
+from ..results.contact_patches import contact_patches, engulfed, touches_base, unsupported
 from ..results.measures import own_asperity, sphere_of
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..solvers.stability import Stability
@@ -130,15 +130,14 @@ def contact_objection(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[Status, str | None, str] | None:
     """What makes a converged state on a contact area no success, or None."""
-    feet = contacts(scene, assembly, surface, assembly.density(multipliers))
+    feet = contact_patches(scene, assembly, surface, assembly.density(multipliers))
     if touches_base(scene, assembly, surface, feet):
         return (
             Status.TOPOLOGY_CHANGE,
             "touches_base",
             "the liquid touches the plane under the asperities",
         )
-    contact = assembly.contact
-    coarse = None if contact is None else contact.objection(contact.touch(surface.points))
+    coarse = assembly.contact.objection(surface.points)
     if coarse is not None:
         return Status.UNDERRESOLVED, None, coarse
     beside = unsupported(scene, assembly, surface)
@@ -157,15 +156,13 @@ def contact_objection(
             f"{inside} spheres lie inside the liquid: the membrane has passed them; start from "
             "the flat solution or with a smaller load",
         )
-    if assembly.trim is not None:
-        own = set(assembly.trim.term.particle(feet.which).tolist())
-        lost = [k for k in range(len(scene.particles)) if k not in own]
-        if lost:
-            return (
-                Status.TOPOLOGY_CHANGE,
-                "detached",
-                f"the droplet does not touch particle[{lost[0]}] any more: bring it nearer",
-            )
+    lost = assembly.contact.without_line(feet.which, len(scene.particles))
+    if lost:
+        return (
+            Status.TOPOLOGY_CHANGE,
+            "detached",
+            f"the droplet does not touch particle[{lost[0]}] any more: bring it nearer",
+        )
     return None
 
 

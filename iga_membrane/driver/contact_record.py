@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..assembly.lagrangian import Assembly
 from ..problems.scene import Scene
 from ..results.contact_line import contact_line, vertical_forces
-from ..results.contact_patches import footing, touches_base
+from ..results.contact_patches import substrate_patches, touches_base
 from ..results.forces import pull_on_sphere, sphere_lines
 from ..results.measures import own_asperity
 from ..solids import SphereLattice, Spheres
@@ -30,9 +30,9 @@ def contact_record(
 ) -> dict[str, Any]:
     """Contact with the substrate, by the names of the result file."""
     surface, scale = result.surface, scene.units
-    on_area = assembly.contact is not None and scene.line_inside is None
-    if on_area or (assembly.trim is not None and not assembly.edges.wetted):
-        return _footing(scene, assembly, result, found, checked)
+    contact = assembly.contact
+    if contact.carries or (contact.passes and not assembly.edges.wetted):
+        return _patches(scene, assembly, result, found, checked)
     line = next((t for t in scene.local_terms() if isinstance(t, WettingLine)), None)
     if line is None:
         return {}
@@ -101,7 +101,7 @@ def _deepest(scene: Scene, checked: Audit | None) -> list[float] | None:
     return place
 
 
-def _footing(
+def _patches(
     scene: Scene,
     assembly: Assembly,
     result: NewtonResult,
@@ -109,10 +109,9 @@ def _footing(
     checked: Audit | None,
 ) -> dict[str, Any]:
     """Contact area by area, by the names of the result file."""
-    scale, on = scene.units, assembly.contact or assembly.trim
-    assert on is not None
+    scale = scene.units
     body = assembly.density(result.multipliers)
-    feet = footing(scene, assembly, result.surface, body)
+    feet = substrate_patches(scene, assembly, result.surface, body)
     numbers = feet.which
     if scene.particles and isinstance(scene.substrate, (SphereLattice, Spheres)):
         # the membrane's solid is a list of its own
@@ -126,12 +125,12 @@ def _footing(
     foot = np.pi * found["contact_radius"] ** 2 if "contact_radius" in found else 0.0
     wet = float(feet.areas.sum()) * scale.length**2
     return {
-        "law": "contact lines" if assembly.contact is None else assembly.contact.law,
+        "law": assembly.contact.law,
         "wet_solids": len(feet.which),
         "asperities": rows,
         "wet_area": wet,
         "wet_fraction": wet / foot if foot else None,
-        "max_penetration": _depth(checked, on.length * scale.length),
+        "max_penetration": _depth(checked, assembly.contact.length * scale.length),
         "deepest_point": _deepest(scene, checked),
         "support_force": -float(feet.total[2]) * scale.force,
         "touches_base": touches_base(scene, assembly, result.surface, feet),

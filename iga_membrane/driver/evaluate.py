@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..assembly.lagrangian import Assembly
+from ..contact.unfitted import is_unfitted
 from ..deadline import OutOfTime, until
 from ..errors import GeometryError
 from ..linalg.inverse_root import SingularMatrix
@@ -88,15 +89,15 @@ def conclude(
     if status is None:
         assert verdict is not None
         status, message = judge(scene, verdict, checked, inside)
-        on_area = assembly.contact is not None and scene.line_inside is None
-        if on_area or assembly.trim is not None:
+        if assembly.contact.carries or assembly.contact.passes:
             objection = contact_objection(scene, assembly, surface, multipliers)
             if objection is not None:
                 status, kind, message = objection
         point = rests_on_a_point(scene)
         if point is not None:
             status, kind, message = point
-    if status is Status.CONVERGED_STABLE and assembly.contact is None and assembly.trim is None:
+    ends = not (assembly.contact.lies or assembly.contact.passes)
+    if status is Status.CONVERGED_STABLE and ends:
         place = crossing(surface)
         if place is not None:
             status, kind = Status.TOPOLOGY_CHANGE, "self-contact"
@@ -179,7 +180,7 @@ def _forces(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array
 ) -> tuple[ParticleForces, ...]:
     """Forces on a sheet's particle, or on those of a droplet."""
-    if scene.particles and assembly.trim is not None:
+    if scene.particles and assembly.contact.passes:
         return forces_on_particles(scene, assembly, surface, multipliers)
     return particle_forces(scene, assembly, surface, multipliers)
 
@@ -192,8 +193,8 @@ def _audited(
     with np.errstate(all="ignore"):
         try:
             motion = assembly.motion(surface)
-            if assembly.trim is not None:
-                return trimmed_audit(scene, surface, motion, body, assembly.trim)
+            if is_unfitted(assembly.contact):
+                return trimmed_audit(scene, surface, motion, body, assembly.contact)
             return audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
         except (GeometryError, MemoryError):
             return None

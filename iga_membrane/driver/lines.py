@@ -9,6 +9,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Index
 from ..assembly.lagrangian import Assembly
+from ..contact.unfitted import is_unfitted
 from ..dofs.symmetry import mirrors
 from ..problems.scene import Scene
 from ..results.contact_line import ContactLine, contact_line, trimmed_line
@@ -71,14 +72,15 @@ def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
 
 def _inside(scene: Scene, surface: Surface) -> list[LineOnSolid]:
     """Lines inside the membrane, split by their solids and put in order round them."""
-    trim = Assembly(scene).trim
-    assert trim is not None
-    whole = trimmed_line(trim, surface, mirrors(scene.sector))
-    owner = trim.solid.nearest(whole.position).which
+    unfitted = Assembly(scene).contact
+    if not is_unfitted(unfitted):
+        return []
+    whole = trimmed_line(unfitted, surface, mirrors(scene.sector))
+    owner = unfitted.solid.nearest(whole.position).which
     found = []
     for which in np.unique(owner):
         line = _part(whole, np.flatnonzero(owner == which))
-        axis = trim.term.axis(np.array([which]))[0]
+        axis = unfitted.term.axis(np.array([which]))[0]
         away = line.position - line.arc @ line.position / line.arc.sum()
         first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
         turn = np.arctan2(away @ np.cross(axis, first), away @ first)

@@ -259,7 +259,7 @@ def _iterate(
         outcome = Outcome(scene, direct, steps, progress=path.progress)
         if partial:
             outcome = Outcome(path.scene, path.result, steps, path.bracket, path.progress)
-    own_start = assembly.contact is None and scene.predictor is None
+    own_start = not assembly.contact.lies and scene.predictor is None
     if direct.status is not None and outcome.bracket is None and own_start:
         assembly.load(scene)
         nearest = newton(assembly, start, None, grading, replace(settings, near=np.inf))

@@ -171,7 +171,7 @@ def walk(
             return conclude(Outcome(scene, state, []), assembly, options, started)
 
         solution = concluded(state)
-        if solution.status is Status.UNDERRESOLVED and assembly.contact is None:
+        if solution.status is Status.UNDERRESOLVED and not assembly.contact.lies:
             # the way may have distorted the mesh: the same state on the scene's own
             own = first(scene, assembly, settings_of(scene, options, started))
             fresh = concluded(own)

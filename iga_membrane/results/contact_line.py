@@ -10,7 +10,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import integer
-from ..contact.unfitted import Trim
+from ..contact.unfitted import Unfitted
 from ..solids import Sphere
 from ..splines.quadrature import gauss
 from ..splines.space import EDGES, line
@@ -75,21 +75,21 @@ def contact_line(
     return ContactLine(k.position, tangent, conormal, angle, weights)
 
 
-def trimmed_line(trim: Trim, surface: Surface, images: list[Array]) -> ContactLine:
+def trimmed_line(unfitted: Unfitted, surface: Surface, images: list[Array]) -> ContactLine:
     """Line geometry on a sphere that the membrane passes through, whole and counterclockwise.
 
     Parameters
     ----------
     images : matrices (3, 3) that carry the sector to each of its images.
     """
-    line = trim.on_line(surface.points)
+    line = unfitted.on_line(surface.points)
     normal = (line.m / line.area[..., None]).reshape(-1, 3)
     solid = line.at.normal.reshape(-1, 3)
     tangent = line.tangent.reshape(-1, 3)
     speed = np.linalg.norm(tangent, axis=1)
     x = line.x.reshape(-1, 3)
     arc = speed * line.table.weights.ravel()
-    turn = np.cross(x - trim.solid.center_of(line.at.which).reshape(-1, 3), tangent)[:, 2]
+    turn = np.cross(x - unfitted.solid.center_of(line.at.which).reshape(-1, 3), tangent)[:, 2]
     tangent = tangent * (np.sign(turn) / speed)[:, None]
     conormal = np.cross(tangent, normal)
     inward = np.einsum("ki,ki->k", conormal, solid)

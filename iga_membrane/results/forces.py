@@ -17,6 +17,7 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..assembly.lagrangian import Assembly
+from ..contact.unfitted import is_unfitted
 from ..dofs.symmetry import mirrors
 from ..problems.scene import Scene
 from ..solids import Sphere
@@ -25,7 +26,7 @@ from ..surface.surface import Surface
 from ..terms import BodyDensity, SphereContactLine
 from ..terms.variations import element_points, forces
 from .contact_line import ContactLine, contact_line, trimmed_line
-from .contact_patches import footing
+from .contact_patches import substrate_patches
 from .wetted_cap import WettedCap
 
 
@@ -92,8 +93,8 @@ def line_on_sphere(
     scene: Scene, assembly: Assembly, surface: Surface, which: int = 0
 ) -> ContactLine:
     """A whole contact line on a sphere of a scene, by its number."""
-    if assembly.trim is not None:
-        return trimmed_line(assembly.trim, surface, mirrors(scene.sector))
+    if is_unfitted(assembly.contact):
+        return trimmed_line(assembly.contact, surface, mirrors(scene.sector))
     term = sphere_lines(scene)[which]
     return contact_line(surface, term.edge, solid=term.sphere)
 
@@ -107,17 +108,17 @@ def pull_on_sphere(
     scene: Scene, assembly: Assembly, surface: Surface, multipliers: Array, which: int = 0
 ) -> Pull:
     """Force on the sphere that carries one of the membrane's lines, by its number."""
-    if assembly.trim is not None:
+    if is_unfitted(assembly.contact):
         own = assembly.density(multipliers)
-        trim, slope = assembly.trim, np.array(own.gradient)
+        unfitted, slope = assembly.contact, np.array(own.gradient)
         pressed = np.zeros(3)
         for k in range(3):
 
             def push(x: Array, n: Array, which: Index, k: int = k) -> Array:
                 return np.asarray((own.constant + x @ slope) * n[..., k])
 
-            pressed[k] = trim.cap(surface.points, push)
-        total = footing(scene, assembly, surface, own).total
+            pressed[k] = unfitted.cap(surface.points, push)
+        total = substrate_patches(scene, assembly, surface, own).total
         return Pull(total, assembly.whole(pressed))
     term, edge = [
         (term, edge) for term, edge in assembly.edges.lines if isinstance(term, SphereContactLine)
@@ -144,12 +145,11 @@ def pull_on_sphere(
 def _work(assembly: Assembly, surface: Surface, multipliers: Array, displacement: Array) -> float:
     """Derivative of the Lagrangian along any displacement (count, 3) of the control points."""
     points, body = surface.points, assembly.density(multipliers)
-    table, contact, edges = assembly.table, assembly.contact, assembly.edges
+    table, edges = assembly.table, assembly.edges
     pull = forces(table, element_points(table, points), assembly.tension, body)
     total = float((pull * displacement[table.functions]).sum())
-    if contact is not None:
-        push = contact.forces(contact.touch(points))
-        total += float((push * displacement[contact.table.functions]).sum())
+    for at, load in assembly.contact.loads(points):
+        total -= float((load * (at.values @ displacement[at.functions])).sum())
     for term, edge in edges.lines:
         pull = term.forces(edge, points, term.strength, body)
         total += float((pull * displacement[edge.functions]).sum())

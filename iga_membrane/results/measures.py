@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..assembly.lagrangian import Assembly
+from ..contact.patches import ContactPatches
 from ..problems.scene import Scene
 from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
@@ -24,7 +25,7 @@ from ..terms import (
 from ..terms import variations as vary
 from .apparent import apparent_angle, cassie_baxter_angle
 from .contact_line import ContactLine, contact_line
-from .contact_patches import Footing, footing
+from .contact_patches import substrate_patches
 from .farthest import highest, widest
 from .forces import line_on_sphere, pull_on_sphere
 from .wetted_cap import WettedCap
@@ -53,12 +54,12 @@ def measures(
     body = assembly.density(multipliers)
     values["pressure"] = -float(body.at(scale.to_local(np.zeros(3)))) * scale.pressure
     ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
-    on_area = assembly.contact is not None and scene.line_inside is None
+    carries = assembly.contact.carries
     values["volume"] = volume(assembly, surface) * scale.length**3 + ends
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
-    elif scene.kind == "sessile_droplet" and (on_area or not assembly.edges.wetted):
+    elif scene.kind == "sessile_droplet" and (carries or not assembly.edges.wetted):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":
         wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
@@ -147,12 +148,11 @@ def _on_solids(
     values: dict[str, float],
 ) -> dict[str, Any]:
     """A drop whose membrane goes on over its foot: it lies on solids or passes through them."""
-    scale, found = scene.units, footing(scene, assembly, surface, body)
+    scale, found = scene.units, substrate_patches(scene, assembly, surface, body)
     wet = float(found.areas.sum()) * scale.length**2
-    known = 0.0  # the middle of a foot that the membrane leaves out
-    lying = wet if assembly.trim is None else 0.0
-    if assembly.trim is None:
-        known = values["A_wet"]
+    # the middle of a foot that the membrane leaves out
+    known = values["A_wet"] * assembly.contact.lies
+    lying = wet * assembly.contact.lies
     top = highest(surface, UP)
     base = base_area(scene, found) + known / scale.length**2
     foot = float(np.sqrt(base / np.pi))
@@ -190,7 +190,7 @@ def _cell(
     """Contact with the one sphere of a cell and the membrane's sag beside it."""
     assert isinstance(scene.substrate, Sphere)
     scale, solid = scene.units, scene.units.local_sphere(scene.substrate)
-    found = footing(scene, assembly, surface, body)
+    found = substrate_patches(scene, assembly, surface, body)
     force = -float(found.total[2])
     edge, corner = _edge_heights(surface)
     heights = {"z_edge": edge * scale.length, "z_corner": corner * scale.length}
@@ -198,8 +198,8 @@ def _cell(
         return heights | {"A_wet": 0.0, "F_sphere": 0.0}  # a failed state off its sphere
     polar, contact = float(found.polar[0]), float(found.heights[0])
     radius = solid.radius * np.sin(polar)
-    lying = 0.0 if assembly.contact is None else float(found.areas.sum())
     wet = float(found.areas.sum())
+    lying = wet * assembly.contact.lies
     press = -body.constant * float(found.projected.sum())
     return heights | {
         "A_LG": values["A_LG"] - lying * scale.length**2,
@@ -228,7 +228,7 @@ def _edge_heights(surface: Surface) -> tuple[float, float]:
     return float(sides), float(corners)
 
 
-def base_area(scene: Scene, found: Footing) -> float:
+def base_area(scene: Scene, found: ContactPatches) -> float:
     """Area of the foot (dimensionless): of the wet spheres' lattice cells, of the convex hull of
     a list of spheres, of the wet spot on a single solid."""
     solid = scene.units.local_solid(scene.substrate) if scene.substrate is not None else None

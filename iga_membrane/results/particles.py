@@ -1,7 +1,7 @@
 """Forces on particles that a membrane passes through, for any orientation of their lines.
 
 The force of membrane and liquid is ``-dE/d(centre)``. A particle's place enters the energy through
-its contact line and its wetted cap only; :mod:`.footing` has that derivative.
+its contact line and its wetted cap only; :mod:`..contact.unfitted_patches` has that derivative.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..assembly.lagrangian import Assembly
+from ..contact.unfitted import is_unfitted
 from ..dofs.symmetry import mirrors
 from ..problems.scene import Scene
 from ..surface.surface import Surface
-from .contact_patches import Spots, contacts
+from .contact_patches import contact_patches
 from .forces import ParticleForces, paper_forces
 
 
@@ -28,12 +29,13 @@ def forces_on_particles(
     weight of liquid between the cap and the cone from the line to its centroid, against gravity,
     and ``F_H = F_P - F_B``.
     """
-    trim, scale = assembly.trim, scene.units
-    assert trim is not None
+    unfitted, scale = assembly.contact, scene.units
+    if not is_unfitted(unfitted):
+        return ()
     body = assembly.density(multipliers)
     slope = np.array(body.gradient)
-    spots = Spots(trim, surface, mirrors(scene.sector))
-    found = contacts(scene, assembly, surface, body)
+    spots = unfitted.spots(surface, mirrors(scene.sector))
+    found = contact_patches(scene, assembly, surface, body)
     line = spots.line
     arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
     middle = spots.vectors(np.einsum("kq,kqi->ki", arc, line.x))
@@ -49,7 +51,7 @@ def forces_on_particles(
     pressed = spots.vectors(np.stack([pushed(k) for k in range(3)], axis=1))
     caps = spots.total(spots.cap(over_cone))
     unit, up, g = scale.force, scene.up, np.array(scene.acceleration)
-    order = trim.term.particle(found.which)
+    order = unfitted.term.particle(found.which)
     result = []
     for k, particle in enumerate(scene.particles):
         center = np.array(particle.center)
@@ -62,7 +64,7 @@ def forces_on_particles(
         buoyancy = -scene.liquid_density * g * caps[i] * scale.length**3
         pressure = scale.axes @ pressed[i] * unit
         contact = scale.axes @ (found.forces[i] - pressed[i]) * unit
-        axis = scale.axes @ trim.term.axis(found.which[i : i + 1])[0]
+        axis = scale.axes @ unfitted.term.axis(found.which[i : i + 1])[0]
         height = found.radii[i] * (1.0 - np.cos(found.polar[i])) * scale.length
         level = -float(body.at(middle[i])) * scale.pressure
         parts = (float(part @ axis) for part in (weight, contact, buoyancy))

@@ -14,7 +14,7 @@ from ..assembly.lagrangian import Assembly
 from ..errors import GeometryError
 from ..linalg.inverse_root import SingularMatrix
 from ..problems.scene import Ramp, Scene
-from ..results.contact_patches import footing
+from ..results.contact_patches import substrate_patches
 from ..status import Status
 from ..surface.reparametrize import regridded
 from .foretold import Foretold
@@ -226,7 +226,7 @@ def _note(
     journal: Journal, path: LoadPath, step: float, assembly: Assembly, found: Sequence[Any]
 ) -> None:
     """Write down a converged step."""
-    memory = None if assembly.contact is None else assembly.contact.memory
+    memory = assembly.contact.memory
     result = replace(path.result, iterations=list(path.result.iterations))
     path.progress = Progress(
         journal.digest, path.last_good, step, result, memory, tuple(path.steps), tuple(found)
@@ -240,7 +240,7 @@ def _resumed(
     """The path as it was when its progress was written, and the next step."""
     scene = ramp(start.load)
     assembly.load(scene)
-    if assembly.contact is not None and start.memory is not None:
+    if start.memory is not None:
         assembly.contact.recall(start.memory)
     result = replace(start.result, iterations=list(start.result.iterations))
     path = LoadPath(result, scene, list(start.steps), start.load, progress=start)
@@ -250,10 +250,10 @@ def _resumed(
 def _wet_set(assembly: Assembly, scene: Scene, state: NewtonResult) -> dict[str, float] | None:
     """How many asperities have a contact line and the energy with them: several equilibria exist,
     and which one is met is a matter of the path."""
-    if assembly.trim is None or state.status is not None:
+    if not assembly.contact.passes or state.status is not None:
         return None
     body = assembly.density(state.multipliers)
-    feet = footing(scene, assembly, state.surface, body)
+    feet = substrate_patches(scene, assembly, state.surface, body)
     energy = float(assembly.copies * assembly.energy(state.surface) * scene.units.energy)
     return {"wet_solids": float(len(feet.which)), "energy": energy}
 

@@ -49,10 +49,6 @@ begins anew there, and how often it does."""
 ROLL, HELD = 0.5, 0.01
 """Way over the contact length that a droplet may roll in one step: once its foot has taken a full
 step, and before; less while it rolls to and fro."""
-BELOW, BELOW_BESIDE = 1e-9, 1e-3
-"""Depth below a plane on the way, over the scene's length, and the same with contact lines inside
-the membrane, which push it there; at its end the audit allows none. Near 180 degrees there is an
-equilibrium that dips below the plane by 2e-4."""
 FLOOR = 1e-12
 """Relative residual of a state that no step improves."""
 ROUNDING = 1e-10
@@ -169,12 +165,7 @@ def newton(
 def _begin(assembly: Assembly, surface: Surface) -> None:
     """Find what is in contact at the start."""
     check_time()
-    if assembly.contact is not None:
-        assembly.follow(surface)
-        assembly.contact.begin()
-    if assembly.trim is not None:
-        assembly.trim.begin()
-        assembly.trim.hold(surface.points)
+    assembly.contact.begin(surface)
 
 
 def _iterate(
@@ -199,9 +190,7 @@ def _iterate(
         if result.best is None or residual < result.best[0]:
             result.best = (residual, result.surface, result.multipliers)
         before = thread_time()
-        farthest = np.inf
-        if assembly.contact is not None:
-            farthest = (reach if steady else HELD) * assembly.contact.length
+        farthest = (reach if steady else HELD) * assembly.contact.reach
         try:
             direction = _direction(system, farthest, plain=residual <= options.near and not flee)
         except SingularMatrix:
@@ -225,7 +214,7 @@ def _iterate(
             result.floor = residual
             return
         crawling = crawling + 1 if taken < CRAWL else 0
-        if assembly.contact is not None and crawling >= PATIENCE:
+        if assembly.contact.lies and crawling >= PATIENCE:
             raise _Stop(Status.STALLED, f"{PATIENCE} steps in a row were cut short")
         if moved is None:
             raise _Stop(
@@ -236,11 +225,11 @@ def _iterate(
         result.surface, steady = moved, taken == 1.0
         last, roll = roll, direction.step[assembly.size - len(roll) :]
         reach = max(0.5 * reach, HELD) if roll @ last < 0.0 else min(1.5 * reach, ROLL)
-        if assembly.contact is not None:
+        if assembly.contact.lies:
             lag = assembly.spines.lag(moved)
             ahead = np.linalg.norm(lag) > LAG * assembly.contact.length
             # one that rolls back is near its place
-            if ahead and assembly.rounds == 0 and rolled < ROLLS and lag @ way >= 0.0:
+            if ahead and assembly.contact.rounds == 0 and rolled < ROLLS and lag @ way >= 0.0:
                 result.surface, steady = assembly.anew(moved), False
                 left, rolled, way = options.max_iterations, rolled + 1, lag
         result.multipliers = result.multipliers + taken * (
@@ -249,10 +238,10 @@ def _iterate(
         # where energies differ by rounding only, no part of a step tells more than another
         floor = residual <= FLOOR and size <= options.tolerance
         full = (taken == 1.0 or floor) and not direction.shift
-        if full and not assembly.settled(result.surface, near):
-            if assembly.rounds > rounds:
+        if full and not assembly.contact.settled_at(result.surface, near):
+            if assembly.contact.rounds > rounds:
                 # other multipliers of contact are another problem
-                left, rounds = options.max_iterations, assembly.rounds
+                left, rounds = options.max_iterations, assembly.contact.rounds
             continue
         if full and size <= options.tolerance:
             twist = 0.0 if grading is None else distortion(result.surface, grading)
@@ -352,7 +341,7 @@ def _search(
     noise = 1e-13 * (abs(start.total) + abs(begin))
     lowest = -np.inf
     if assembly.above_plane:
-        lowest = -BELOW if assembly.trim is None else -BELOW_BESIDE
+        lowest = -assembly.contact.depth_allowed
     part = longest
     for _ in range(25):
         trial = surface.moved(surface.points + part * displacement)

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..assembly.lagrangian import Assembly
-from ..contact.binding import law_of, line_of
+from ..contact.laws import law_of, line_of
+from ..contact.unfitted import is_unfitted
 from ..dofs.symmetry import mirrors
 from ..initial.profiles import meniscus
 from ..problems.scene import Scene
@@ -72,13 +73,13 @@ def first(scene: Scene, assembly: Assembly, options: NewtonOptions) -> NewtonRes
             none = np.zeros(assembly.multipliers)
             return replace(before, surface=near_start, multipliers=none, best=None)
         start = near_start
-        if assembly.trim is not None:
+        if assembly.contact.passes:
             start = pressed(scene, assembly, near_start)
             assembly.keep_motion(near_start)
         if len(before.multipliers) == assembly.multipliers:
             multipliers = before.multipliers
     result = newton(assembly, start, multipliers, scene.meridian_grading, options)
-    if result.status in FAILED and assembly.trim is not None:
+    if result.status in FAILED and assembly.contact.passes:
         result = _firmly(scene, assembly, start, multipliers, options) or result
     if before is not None:
         result.iterations = before.iterations + result.iterations
@@ -94,11 +95,10 @@ def _firmly(
     options: NewtonOptions,
 ) -> NewtonResult | None:
     """Newton with firmer ties first, then from there with the usual ones; None if either fails."""
-    assert assembly.trim is not None
-    ties, grading = assembly.trim.ties, scene.meridian_grading
-    ties.firmness = FIRM
+    grading = scene.meridian_grading
+    assembly.contact.firm(FIRM)
     firm = newton(assembly, start, multipliers, grading, options)
-    ties.firmness = 1.0
+    assembly.contact.firm(1.0)
     if firm.status is not None:
         return None
     result = newton(assembly, firm.surface, firm.multipliers, grading, options)
@@ -122,22 +122,23 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     """
     from scipy.spatial import cKDTree
 
-    trim = assembly.trim
-    assert trim is not None
-    solid = trim.term.solid
+    if not is_unfitted(assembly.contact):
+        return surface
+    term = assembly.contact.term
+    solid = term.solid
     x = assembly.table.values @ surface.points[assembly.table.functions]
     x = np.concatenate([x.reshape(-1, 3) @ m for m in mirrors(scene.sector)])
     at = solid.nearest(x)
     which, place = np.unique(at.which, return_inverse=True)
     gap = np.full(len(which), np.inf)
     np.minimum.at(gap, place.ravel(), at.gap)
-    on_asperity = (gap < 0) & (trim.term.particle(which) < 0)
+    on_asperity = (gap < 0) & (term.particle(which) < 0)
     # else it passes through them already
     lies = scene.predictor is not None and law_of(scene.predictor) is not None
     touched = np.flatnonzero(on_asperity & lies)
     which, depth = which[touched], -gap[touched]
     centers, radii = solid.center_of(which), solid.radius_of(which)
-    wanted = radii * (1.0 + trim.term.cosine(which))
+    wanted = radii * (1.0 + term.cosine(which))
     press = np.where(depth < SHALLOW * wanted, (wanted - depth) / SHALLOW, 0.0)
     deep = np.maximum(depth, wanted)
     spot = 0.9 * np.sqrt(np.maximum(2.0 * radii * deep - deep**2, 0.0))
@@ -148,15 +149,15 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
         fall[near] += _bump(surface.points[near], center, WIDE * radii[k], press[k])
         fall[near] += _bump(surface.points[near], center, spot[k], DIMPLE * spot[k])
     points = surface.points - np.outer(fall, [0.0, 0.0, 1.0])
-    first_particle = trim.term.count - len(scene.particles)
+    first_particle = term.count - len(scene.particles)
     for k in range(len(scene.particles)):
         each = np.array(first_particle + k)
-        center, toward = solid.center_of(each), trim.term.axis(each)
+        center, toward = solid.center_of(each), term.axis(each)
         along = (x - center) @ toward
         beside = np.linalg.norm(x - center - along[:, None] * toward, axis=1)
         # the drop's other side is crossed by the axis too
         pierced = int(np.where(np.abs(along) < NEARBY, beside, np.inf).argmin())
-        angle = float(np.degrees(np.arccos(trim.term.cosine(each))))
+        angle = float(np.degrees(np.arccos(term.cosine(each))))
         particle = Sphere(angle, float(solid.radius_of(each)))
         bent = meniscus(particle, -float(along[pierced]), 1.0)
         distance = np.linalg.norm(surface.points - x[pierced], axis=1) / particle.radius

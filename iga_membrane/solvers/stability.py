@@ -104,11 +104,12 @@ def stability_of(
     if index and neutral.loose:
         held = [_factor(state, b, neutral, neutral.loose)[2].index for b in blocks]
         held_index = sum(b.parity.alike * k for b, k in zip(blocks, held, strict=True))
+    mode = state.motion_of(block).displacement(verdicts[worst].mode)
     return Stability(
         index,
         verdicts[worst].smallest,
         verdicts[worst].error,
-        assembly.extended(state.motion_of(block).displacement(verdicts[worst].mode), state.motion),
+        assembly.contact.extended(mode, state.motion),
         "full" if scope == "full" and assembly.spines.whole else assembly.spines.model,
         assembly.spines.model,
         block.parity.within,

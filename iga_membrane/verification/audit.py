@@ -14,8 +14,8 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..assembly.lagrangian import TINY
-from ..contact.obstacle import ContactSet
-from ..contact.subgrid import PointSupports
+from ..contact.model import ContactModel
+from ..contact.obstacle import Obstacle, is_obstacle
 from ..deadline import check_time
 from ..dofs.boundary_conditions import Fixed, Sector, Symmetry
 from ..dofs.spines import Motion
@@ -57,7 +57,7 @@ def audit(
     body: BodyDensity,
     line_load: Array,
     points: tuple[int, int],
-    contact: ContactSet | None = None,
+    contact: ContactModel,
 ) -> Audit:
     """Check a state.
 
@@ -68,7 +68,7 @@ def audit(
     body : body density of the Lagrangian, so minus the pressure.
     line_load : (count,) coefficients of the load with which a curved solid holds its edge.
     points : the solver's Gauss points in each direction.
-    contact : of a membrane that lies on a solid, with its multipliers.
+    contact : of the state, with its multipliers.
     """
     space, sector = surface.space, scene.sector
     terms = scene.local_terms()
@@ -98,13 +98,11 @@ def audit(
             + table.values.transpose(0, 2, 1) @ load
         )
         scatter(total, absolute, motion, table.functions, force)
-    push = np.zeros(3)
-    if contact is not None:
-        carried = contact.push(contact.touch(surface.points))
-        push = sector.copies * carried.sum(axis=(0, 1))
-        pull = -contact.table.values.transpose(0, 2, 1) @ carried
-        scatter(total, absolute, motion, contact.table.functions, pull)
-    others = [float(push[2])] if contact is not None else []
+    others = []
+    for at, carried in contact.loads(surface.points):
+        others.append(sector.copies * float(carried[..., 2].sum()))
+        pull = -at.values.transpose(0, 2, 1) @ carried
+        scatter(total, absolute, motion, at.functions, pull)
     for which, edge_pull in edge_forces(scene, surface, line_load, 2 * points[0]):
         scatter(total, absolute, motion, which, edge_pull)
         if scene.line_inside is not None:
@@ -114,7 +112,7 @@ def audit(
         missing_volume(terms, loads.inside),
         line=line_balance(scene, surface, loads, tension, 2 * points[0], solids=others),
     )
-    if contact is not None:
+    if is_obstacle(contact):
         return replace(found, **_lying(scene, surface, body, loads, contact, others, points))
     lines = [t for t in terms if isinstance(t, WettingLine)]
     if not lines:
@@ -128,7 +126,7 @@ def _lying(
     surface: Surface,
     body: BodyDensity,
     loads: Loads,
-    contact: ContactSet,
+    contact: Obstacle,
     others: list[float],
     points: tuple[int, int],
 ) -> dict[str, Any]:
@@ -139,7 +137,7 @@ def _lying(
     others : vertical forces on the membrane of the solid and of lines inside it.
     """
     found: dict[str, Any] = {}
-    if not isinstance(contact, PointSupports):
+    if contact.resolves:
         found["penetration"], found["deepest"] = _depth(surface, contact, points)
         found["angle"] = _tilt(surface, contact)
     if scene.line_inside is not None:
@@ -219,7 +217,7 @@ def _ending(
     return found
 
 
-def _tilt(surface: Surface, contact: ContactSet) -> float | None:
+def _tilt(surface: Surface, contact: Obstacle) -> float | None:
     """Mean cosine between membrane and solid where they touch, less that of 180 degrees, on the
     solid where it is worst; None where adhesion stands for an angle, or nothing touches."""
     touch = contact.touch(surface.points)
@@ -346,7 +344,7 @@ Place = tuple[float, float, float]
 
 
 def _depth(
-    surface: Surface, contact: ContactSet, points: tuple[int, int]
+    surface: Surface, contact: Obstacle, points: tuple[int, int]
 ) -> tuple[float, Place | None]:
     """Largest depth over the contact length, sampled four times denser than the quadrature, and
     where the membrane is nearest to the solid."""

@@ -95,8 +95,7 @@ def _checked(scene: Scene, seed: int) -> Derivatives:
     slopes, bends = [], []
     for _ in range(DIRECTIONS):
         way = rng.uniform(-1.0, 1.0, assembly.size)
-        if assembly.trim is not None:
-            way[assembly.trim.ties.idle] = 0.0
+        way[assembly.contact.idle] = 0.0
 
         def lagrangian(step: float, way: Array = way) -> float:
             there = surface.moved(surface.points + motion.displacement(step * way))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..assembly.lagrangian import TINY
-from ..contact.unfitted import EXTRA, Trim
+from ..contact.unfitted import EXTRA, Unfitted
 from ..deadline import check_time
 from ..dofs.spines import Motion
 from ..problems.scene import Scene
@@ -40,7 +40,7 @@ DENSE = 12
 
 
 def trimmed_audit(
-    scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, trim: Trim
+    scene: Scene, surface: Surface, motion: Motion, body: BodyDensity, unfitted: Unfitted
 ) -> Audit:
     """Check a state.
 
@@ -49,14 +49,14 @@ def trimmed_audit(
     surface : in the scene's scale.
     motion : the directions in which the residual is tested.
     body : body density of the Lagrangian, so minus the pressure.
-    trim : with the contact lines of the state.
+    unfitted : with the contact lines of the state.
     """
     terms, sector = scene.local_terms(), scene.sector
     tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
-    outside = trim.cut(surface.points, 2 * (surface.space.degree + EXTRA))
+    outside = unfitted.cut(surface.points, 2 * (surface.space.degree + EXTRA))
     points = 2 * (surface.space.degree + 1)
-    dense = surface.space.table(points, trim.elements)
-    dense = dense.weighted(outside.share * trim.portion)
+    dense = surface.space.table(points, unfitted.elements)
+    dense = dense.weighted(outside.share * unfitted.portion)
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     loads = Loads(sector.copies)
     for table in (dense, outside.area):
@@ -64,7 +64,7 @@ def trimmed_audit(
             check_time()
             part = table.part(slice(start, start + AT_A_TIME))
             _membrane(surface, part, tension, body, motion, total, absolute, loads)
-    line = trim.on_line(surface.points, outside)
+    line = unfitted.on_line(surface.points, outside)
     arc = np.linalg.norm(line.tangent, axis=-1) * line.table.weights
     membrane, solid = line.m / line.area[..., None], line.at.normal
     sine = np.linalg.norm(np.cross(membrane, solid), axis=-1)
@@ -74,11 +74,12 @@ def trimmed_audit(
     scatter(total, absolute, motion, line.table.functions, pull)
     for which, pull in edge_forces(scene, surface, np.zeros(len(surface.points)), points):
         scatter(total, absolute, motion, which, pull)
-    pull = tension * trim.ties.forces(surface.points)
-    scatter(total, absolute, motion, trim.ties.across[0], pull)
-    total[trim.ties.idle] = 0.0
-    inside = loads.inside + sector.copies * trim.under(surface.points, BodyDensity(1.0), outside)
-    off = float(np.abs(line.at.gap).max(initial=0.0)) / trim.length
+    pull = tension * unfitted.ties.forces(surface.points)
+    scatter(total, absolute, motion, unfitted.ties.across[0], pull)
+    total[unfitted.ties.idle] = 0.0
+    under = unfitted.under(surface.points, BodyDensity(1.0), outside)
+    inside = loads.inside + sector.copies * under
+    off = float(np.abs(line.at.gap).max(initial=0.0)) / unfitted.length
     own, young = (float(v[..., 2].ravel() @ arc.ravel()) for v in _conormals(line))
     pulls = [sector.copies * tension * pull for pull in (own, young)]
     foot = next((t for t in terms if isinstance(t, PlaneContactLine)), None)
@@ -88,7 +89,7 @@ def trimmed_audit(
         missing_volume(terms, inside),
         line=line_balance(scene, surface, loads, tension, points, inside=pulls[:1]),
         angle=_worst_angle(line, arc, rim, foot),
-        penetration=max(_depth(surface, trim, outside.share), off),
+        penetration=max(_depth(surface, unfitted, outside.share), off),
     )
     if is_hung(scene):
         return found
@@ -98,7 +99,7 @@ def trimmed_audit(
     gradient = np.array(body.gradient)
     push = density.sum(axis=(0, 1))
     for axis in range(3):
-        push[axis] += trim.cap(
+        push[axis] += unfitted.cap(
             surface.points,
             lambda x, n, which, k=axis: (body.constant + x @ gradient) * n[..., k],  # type: ignore[misc]
             outside,
@@ -165,9 +166,9 @@ def _membrane(
     loads.add(body, k.position, k.normal, area, None)
 
 
-def _depth(surface: Surface, trim: Trim, share: Array) -> float:
+def _depth(surface: Surface, unfitted: Unfitted, share: Array) -> float:
     """Largest depth over the contact length of elements that count as outside."""
-    near = np.flatnonzero(trim.near(surface.points) * share)
-    dense = surface.space.table(DENSE, trim.elements[near])
-    gap = trim.solid.nearest(dense.values @ surface.points[dense.functions]).gap
-    return max(0.0, -float(gap.min(initial=np.inf))) / trim.length
+    near = np.flatnonzero(unfitted.near(surface.points) * share)
+    dense = surface.space.table(DENSE, unfitted.elements[near])
+    gap = unfitted.solid.nearest(dense.values @ surface.points[dense.functions]).gap
+    return max(0.0, -float(gap.min(initial=np.inf))) / unfitted.length

@@ -106,10 +106,10 @@ class State:
         scene, surface = scene or self.scene, surface or self.surface
         body, assembly = body or self.solution.body, self.assembly
         motion = assembly.motion(surface)
-        if assembly.trim is not None:
-            trim = Assembly(replace(scene, surface=self.solution.surface)).trim
-            trim.hold(self.surface.points)
-            return trimmed_audit(scene, surface, motion, body, trim)
+        if assembly.contact.passes:
+            contact = Assembly(replace(scene, surface=self.solution.surface)).contact
+            contact.hold(self.surface.points)
+            return trimmed_audit(scene, surface, motion, body, contact)
         contact = assembly.contact
         return audit(scene, surface, motion, body, self.line_load, assembly.points, contact)
 

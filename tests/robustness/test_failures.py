@@ -151,9 +151,9 @@ def test_a_start_on_a_saddle_is_not_a_success():
 
 def test_contact_that_flips_at_every_step_ends(monkeypatch):
     """N7: half of the contact points are let go and taken back in turn."""
-    from iga_membrane.contact.obstacle import ContactSet
+    from iga_membrane.contact.obstacle import Obstacle
 
-    original, turn = ContactSet.touch, []
+    original, turn = Obstacle.touch, []
 
     def flipping(self, points):
         touch = original(self, points)
@@ -161,7 +161,7 @@ def test_contact_that_flips_at_every_step_ends(monkeypatch):
         touch.traction[len(turn) % 2 :: 2] *= 1.0 + 0.5 * (-1) ** len(turn)
         return touch
 
-    monkeypatch.setattr(ContactSet, "touch", flipping)
+    monkeypatch.setattr(Obstacle, "touch", flipping)
     options = iga.SolverOptions(max_iterations=20, max_cpu_s=20.0)
     mesh = iga.Discretization(elements=8, degree=2, model="eighth")
     lattice = iga.SphereLattice(180, 0.5, 1.5)
@@ -294,7 +294,7 @@ PATH = path_file("substrate.contact_angle", ANGLES)
 STRUCK = """
 import os, signal, sys, time
 from iga_membrane import cli, files
-from iga_membrane.solver import newton
+from iga_membrane.solvers import newton
 from iga_membrane.assembly.lagrangian import Assembly
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run in background

@@ -42,7 +42,7 @@ def state(scene, seed, sunk):
     assembly, surface = Assembly(scene), scene.local_surface()
     motion = assembly.spines.on(surface)
     random = np.random.default_rng(seed)
-    step = 0.02 * assembly.trim.term.solid.scale * random.standard_normal(assembly.size)
+    step = 0.02 * assembly.contact.term.solid.scale * random.standard_normal(assembly.size)
     surface = surface.moved(surface.points + motion.displacement(step) - [0.0, 0.0, sunk])
     surface = assembly.relaxed(surface, assembly.spines.on(surface))
     return assembly, surface, motion, random
@@ -66,8 +66,8 @@ def test_energy_and_volume_have_exact_derivatives(name, monkeypatch):
     assembly, surface, motion, random = state(scene, 1, sunk)
     multipliers = np.zeros(assembly.multipliers)  # the last holds a shift's gauge, not an energy
     multipliers[: len(assembly.constraints)] = 2.0
-    along = 0.3 * assembly.trim.term.solid.scale * random.standard_normal(assembly.size)
-    along[assembly.trim.ties.idle] = 0.0
+    along = 0.3 * assembly.contact.term.solid.scale * random.standard_normal(assembly.size)
+    along[assembly.contact.ties.idle] = 0.0
     first, second = lagrangian_slopes(assembly, surface, multipliers, motion, along)
     assert first > 1.8
     assert second > 2.7
@@ -78,7 +78,7 @@ def test_derivatives_without_the_ends_of_graphs_are_wrong(monkeypatch):
     scene, _ = SCENES["square cell"]()
     assembly, surface, motion, random = state(scene, 1, 0.0)
     along = random.standard_normal(assembly.size) * 0.05
-    along[assembly.trim.ties.idle] = 0.0
+    along[assembly.contact.ties.idle] = 0.0
     whole = along @ (assembly.system(surface, motion.directions, np.zeros(0)).matrix @ along)
     monkeypatch.setattr(
         "iga_membrane.contact.unfitted_lines.end_hessian",
@@ -97,15 +97,15 @@ def test_wetted_caps_are_integrated_exactly(monkeypatch):
     for depth in (0.2, 0.7, 1.0, 1.3):
         points = scene.local_surface().points.copy()
         points[:, 2] = z + 1.0 - depth
-        trim = assembly.trim
-        _, area = trim.wetting(points)
+        contact = assembly.contact
+        _, area = contact.wetting(points)
         assert area == pytest.approx(2.0 * np.pi * depth, rel=1e-9)
         cap = np.pi * depth**2 * (3.0 - depth) / 3.0
         base = np.pi * (2.0 * depth - depth**2)
         # liquid above the membrane less the solid in it: the flux through cap and disc
         flux = -(cap + (z + 1.0 - depth) * base)
-        assert trim.under(points, BodyDensity(1.0)) == pytest.approx(flux, rel=1e-9)
-        moment = trim.under(points, BodyDensity(0.0, (1.0, 0.0, 0.0)))
+        assert contact.under(points, BodyDensity(1.0)) == pytest.approx(flux, rel=1e-9)
+        moment = contact.under(points, BodyDensity(0.0, (1.0, 0.0, 0.0)))
         assert moment == pytest.approx(x * flux, rel=1e-8)
     assert y > 0
 
@@ -118,7 +118,7 @@ def test_ties_vanish_on_polynomials():
     assembly.relaxed(surface, assembly.spines.on(surface))
     flat = surface.points.copy()
     flat[:, 2] = -1.3
-    ties = assembly.trim.ties
+    ties = assembly.contact.ties
     assert len(ties.across[0]) > 0
     assert np.abs(ties.forces(flat)[..., 2]).max() < 1e-14
     assert np.abs(ties.forces(surface.points)[..., 2]).max() > 1e-6
@@ -128,6 +128,6 @@ def test_a_trial_far_from_all_solids_has_an_energy():
     scene = cell(shape="circle", elements=8)
     assembly, surface = Assembly(scene), scene.local_surface()
     up = 20.0 * surface.size * np.array([0.0, 0.0, 1.0])
-    assembly.trim.begin()
+    assembly.contact.begin(surface)
     away = assembly.energies(surface.moved(surface.points + up))
     assert np.isfinite(away.total)
