@@ -11,9 +11,10 @@ from ..solids import SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import AreaTerm, Contact, TrimmedContactLine
 from ..terms.variations import element_points
+from .covering import Covering
 from .laws import law_of, line_of
 from .model import Conforming, ContactModel
-from .obstacle import Covering, Obstacle
+from .obstacle import Obstacle
 from .subgrid import PointSupports
 from .unfitted import Unfitted
 

@@ -19,7 +19,6 @@ all quadrature points.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import TypeGuard
 
 import numpy as np
@@ -37,6 +36,7 @@ from .laws import law_of, same_law
 from .model import ContactModel, another_way
 from .obstacle_patches import patches_of
 from .patches import ContactPatches, behind
+from .touch import Touch
 
 SOFT = 0.025
 """First ``delta`` over the squared contact length: sinks about a twentieth of an asperity."""
@@ -66,25 +66,6 @@ LIES = 2e-4
 TINY = 1e-300
 GIVEN = 3e-5
 """Depth by compliance over the contact length below which gaps count as none by the depth."""
-
-
-@dataclass(frozen=True, eq=False)
-class Touch:
-    """Contact at one state.
-
-    Attributes
-    ----------
-    at : nearest surfaces at the contact points (elements, points).
-    traction : (elements, points) pressure of the solid on the membrane, per reference area.
-    gain : (elements, points) part of the adhesion that is gained; pull, rise : its first and second
-        derivative by the gap, times the adhesion.
-    """
-
-    at: Nearest
-    traction: Array
-    gain: Array
-    pull: Array
-    rise: Array
 
 
 class Obstacle(ContactModel):
@@ -412,12 +393,6 @@ class Obstacle(ContactModel):
         lifted = touch.at.gap[near] + depth - aim + sunk
         self._lift[near] = np.where(off, lifted, self._lift[near])
         return bool(off.any())
-
-
-class Covering(Obstacle):
-    """The paper's whole membrane: it lies on its solid, and a line inside it carries it too."""
-
-    carries = False
 
 
 def is_obstacle(model: ContactModel) -> TypeGuard[Obstacle]:

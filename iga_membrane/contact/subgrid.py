@@ -24,7 +24,8 @@ from ..splines import Table
 from ..splines.point_load import effective_radius
 from ..surface.surface import Surface
 from ..terms import Contact, Ring
-from .obstacle import Obstacle, Touch
+from .obstacle import Obstacle
+from .touch import Touch
 
 WIDEST = 2.0
 """Radius of a spot over the effective radius up to which sags are right to 5 percent

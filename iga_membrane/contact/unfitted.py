@@ -26,14 +26,10 @@ from .ghost_penalty import Ties
 from .laws import line_of
 from .model import ContactModel, another_way
 from .patches import ContactPatches, behind
+from .spot_cores import Cores
 from .unfitted_lines import add_forces, add_hessian
 from .unfitted_patches import Spots, patches_of
 
-CORE = 0.65, 0.85
-"""Least and largest part of a spot's radius inside which the membrane counts as deeper than it
-lies."""
-LOOSE = 0.3
-"""The least part of a spot on a particle."""
 ON_LINE = 1e-7
 """Gap over the contact length that points of a contact line may have."""
 EXTRA = 4
@@ -94,7 +90,7 @@ class Unfitted(ContactModel):
         self.ties = Ties(space, elements, portion, self._faces, own, size)
         self._points = space.degree + EXTRA
         self._known: list[tuple[Array, Outside]] = []
-        self._cores = np.zeros(0, int), np.zeros((0, 3)), np.zeros(0)
+        self._cores = Cores.none()
         self._restart()
 
     def released(self) -> Unfitted:
@@ -280,7 +276,7 @@ class Unfitted(ContactModel):
             check_time()
             x, slopes = patches.at(rows, u)
             at = self.term.solid.nearest(x)
-            depth, outward = self._core(x, at.which)
+            depth, outward = self._cores.depth(x, at.which, self.term)
             return at.gap - depth, np.einsum("kqci,kqi->kqc", slopes, at.normal + outward), at.which
 
         made = cut(level, len(near), count)
@@ -308,54 +304,9 @@ class Unfitted(ContactModel):
             ),
         )
 
-    def _core(self, x: Array, which: Index) -> tuple[Array, Array]:
-        """How much deeper points count than they lie, well inside contact lines, and minus its
-        gradient (..., 3): the spline may rise out of its solid again there, where nothing holds it.
-        """
-        numbers, middles, radii = self._cores
-        if not len(numbers):
-            return np.zeros(which.shape), np.zeros(x.shape)
-        place = np.minimum(np.searchsorted(numbers, which), len(numbers) - 1)
-        radius = np.where(numbers[place] == which, radii[place], 0.0) + 1e-300
-        away = _across(x - middles[place], self.term.axis(which))
-        level = np.linalg.norm(away, axis=-1)
-        inside = np.maximum(1.0 - level / radius, 0.0)
-        strength = self.term.solid.radius_of(which)
-        slope = 2.0 * strength * inside / (radius * np.maximum(level, 1e-300))
-        return strength * inside**2, slope[..., None] * away
-
     def _find_cores(self, points: Array) -> None:
-        """Middles of the wetted spots of the whole body, and radii well inside them, for the next
-        states.
-
-        A membrane that leaves the sphere at ``psi = pi - theta`` would, with the curvature it has
-        there, meet it again about ``psi r`` farther in.
-        """
-        line, solid = self.on_line(points), self.term.solid
-        speed = np.linalg.norm(line.tangent, axis=-1)
-        along = line.tangent / speed[..., None]
-        rise = np.sign(line.gh)[..., None] * line.ah
-        rise = rise - np.einsum("kqi,kqi->kq", rise, along)[..., None] * along
-        x, dry = (np.concatenate([v @ m for m in self._images]).reshape(-1, 3)
-                  for v in (line.x, rise))  # fmt: skip
-        arc = np.tile(speed * line.table.weights, (len(self._images), 1)).ravel()
-        numbers: Index
-        numbers, place = np.unique(solid.nearest(x).which, return_inverse=True)
-        outer: Mask = np.ones(len(x), bool)
-        for _ in range(2):
-            weight = np.bincount(place, arc * outer)
-            middles = np.stack([np.bincount(place, arc * outer * v) / weight for v in x.T], axis=1)
-            away = _across(x - middles[place], self.term.axis(numbers[place]))
-            # inside a spot the spline may rise out of its solid again: no contact line
-            outer = np.einsum("ki,ki->k", away, dry) > 0.0
-            outer |= np.bincount(place, outer)[place] == 0
-        radii: Array = np.full(len(numbers), np.inf)
-        np.minimum.at(radii, place[outer], np.linalg.norm(away[outer], axis=1))
-        psi = np.pi - np.arccos(self.term.cosine(numbers))
-        again = 0.5 * psi * solid.radius_of(numbers)
-        # on a particle, which may stand anywhere, a line has farther to go than on an asperity
-        least = np.where(self.term.particle(numbers) >= 0, LOOSE, CORE[0])
-        self._cores = numbers, middles, np.clip(radii - again, least * radii, CORE[1] * radii)
+        """Know the wetted spots of a state, for the next ones."""
+        self._cores = Cores.inside(self.on_line(points), self.term, self._images)
         self._known.clear()
 
     def _connected(self, active: Mask) -> Mask:
@@ -413,12 +364,6 @@ class Unfitted(ContactModel):
         self.ties.hold(
             self.counts(points, len(self.elements)), self.outside(points).touched, nearest >= 0
         )
-
-
-def _across(vectors: Array, axes: Array) -> Array:
-    """The part of vectors (..., 3) at right angles to unit axes."""
-    along = np.einsum("...i,...i->...", vectors, axes)
-    return np.asarray(vectors - along[..., None] * axes)
 
 
 def is_unfitted(model: ContactModel) -> TypeGuard[Unfitted]:

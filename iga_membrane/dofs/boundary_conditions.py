@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 from ..arguments import checked
 from ..checks import NOT_NEGATIVE, items, number, words
@@ -18,6 +18,28 @@ def _reach(field: str, value: Any) -> float:
     return value if endless else number(field, value, above=0.0)
 
 
+Model = Literal["full", "half", "quarter", "eighth"]
+"""How much of a patch is computed."""
+
+
+class Restrictable(Protocol):
+    """What a support may ask of a motion (:class:`.restrictions.Restrictions`)."""
+
+    def fix(self, edge: str) -> None: ...
+
+    def slide(self, support: Sliding) -> None: ...
+
+    def mirror_in(self, axis: str) -> None: ...
+
+    def stand(self, edge: str) -> None: ...
+
+    def join(self, edges: tuple[str, str]) -> None: ...
+
+    def compute(self, sector: Sector) -> None: ...
+
+    def shift(self, axes: str, above: float) -> None: ...
+
+
 @dataclass(frozen=True)
 @checked(edge=EDGE)
 class Fixed:
@@ -29,6 +51,10 @@ class Fixed:
     """
 
     edge: str
+
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.fix(self.edge)
 
 
 @dataclass(frozen=True)
@@ -47,6 +73,10 @@ class Sliding:
     edge: str = "xi2=0"
     solid: Sphere | None = None
     reach: float = float("inf")
+
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.slide(self)
 
     @property
     def on(self) -> Solid:
@@ -68,6 +98,10 @@ class Symmetry:
 
     axis: Literal["x", "y", "z"]
 
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.mirror_in(self.axis)
+
 
 @dataclass(frozen=True)
 @checked(edge=EDGE)
@@ -80,6 +114,10 @@ class Mirror:
     """
 
     edge: str
+
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.stand(self.edge)
 
 
 @dataclass(frozen=True)
@@ -94,9 +132,9 @@ class Joint:
 
     edges: tuple[str, str] = ("xi1=0", "xi1=1")
 
-
-Model = Literal["full", "half", "quarter", "eighth"]
-"""How much of a patch is computed."""
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.join(self.edges)
 
 
 @dataclass(frozen=True)
@@ -113,6 +151,10 @@ class Sector:
     """
 
     model: Model = "full"
+
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.compute(self)
 
     @property
     def copies(self) -> int:
@@ -142,6 +184,10 @@ class Shift:
 
     axes: str
     above: float = 0.0
+
+    def restrict(self, motion: Restrictable) -> None:
+        """Restrict a motion."""
+        motion.shift(self.axes, self.above)
 
 
 Support = Fixed | Sliding | Symmetry | Mirror | Joint | Sector | Shift

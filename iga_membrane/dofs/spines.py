@@ -21,9 +21,10 @@ from ..errors import GeometryError
 from ..splines import Space, net_of
 from ..splines.space import EDGES
 from ..surface.surface import Surface
-from .boundary_conditions import Fixed, Joint, Mirror, Sector, Shift, Sliding, Support, Symmetry
+from .boundary_conditions import Sliding, Support
 from .parity import ODD, Parity, parts
-from .symmetry import FOLDS, check_symmetric, sector_images
+from .restrictions import Restrictions
+from .symmetry import FOLDS
 
 CORNER = 0.2
 """Reach of a rim's corner over the rim's side; 0.15 to 0.45 take the same Newton iterations."""
@@ -130,31 +131,11 @@ class Spines:
         self._given = directions
         self._start = surface.points
         self.space = space
-        self._sliding = [s for s in supports if isinstance(s, Sliding)]
-        self.model = next((s.model for s in supports if isinstance(s, Sector)), Sector().model)
-        self._mirrors: list[tuple[Index, int]] = []
-        self._upright: list[tuple[Index, Index]] = []
-        owner: Index = np.arange(space.count)
-        fixed = np.zeros(space.count, bool)
-        for support in supports:
-            if isinstance(support, Sector) and support.model != "full":
-                owner = sector_images(space, support)[owner]
-                check_symmetric(surface, support)
-            elif isinstance(support, Joint):
-                first, second = (space.edge_functions(edge) for edge in support.edges)
-                owner[second] = owner[first]
-            elif isinstance(support, Symmetry):
-                axis = "xyz".index(support.axis)
-                on_plane = np.abs(surface.points[:, axis]) <= 1e-12 * surface.size
-                self._mirrors.append((np.flatnonzero(on_plane), axis))
-                rows = [_next_to(space, edge) for edge in space.open_edges]
-                self._upright += [row for row in rows if on_plane[row[0]].all()]
-            elif isinstance(support, Mirror):
-                self._upright.append(_next_to(space, support.edge))
-            elif isinstance(support, Fixed):
-                fixed[space.edge_functions(support.edge)] = True
-        for wall, near in 2 * self._upright:  # twice, for corners
-            owner[near] = owner[wall]
+        held = Restrictions(surface, supports)
+        self._sliding, self.model = held.sliding, held.model
+        self._mirrors, self._upright, self._seams = held.mirrors, held.upright, held.seams
+        self.shifts, self.share = held.shifts, held.share
+        owner, fixed = held.owner, held.fixed
         self._curved = [
             (s, space.edge_functions(s.edge)) for s in self._sliding if s.solid is not None
         ]
@@ -165,26 +146,14 @@ class Spines:
         primary = int(numbers.max(initial=-1)) + 1
         own = primary + int(seconds.max(initial=-1)) + 1
         self.spare = spare = space.count + len(edge)
-        shift = next((s for s in supports if isinstance(s, Shift)), None)
-        axes = "" if shift is None else shift.axes
-        self.shifts: Array = np.eye(3)[["xyz".index(axis) for axis in axes]]
-        self.share: Array = np.zeros(space.count)
-        if shift is not None:
-            height = np.maximum(surface.points[:, 2] - shift.above, 0.0)
-            self.share = height / height.max()
-        last: Index = np.arange(len(axes))
-        self.size = own + len(axes)
+        last: Index = np.arange(len(self.shifts))
+        self.size = own + len(last)
         self.points: Index = np.concatenate([np.arange(space.count), edge, [0], 0 * last])
         self.unknowns: Index = np.concatenate([numbers, primary + seconds, [-1], own + last])
         self.held: Index = np.concatenate([np.full(space.count, -1), seconds, [-1], -1 - 0 * last])
         self.second: Index = np.full(space.count, spare)
         self.second[edge] = space.count + np.arange(len(edge))
         self.extra: list[Index] = [self.second]
-        self._seams = [
-            tuple(space.edge_functions(edge) for edge in support.edges)
-            for support in supports
-            if isinstance(support, Joint)
-        ]
 
     def on(self, surface: Surface) -> Motion:
         """Directions re-based on a surface: its normals, blended into a sliding edge's plane.
@@ -363,15 +332,6 @@ class Spines:
                 "parallel or zero; start from a regular parametrization"
             )
         return np.asarray(c / length)
-
-
-def _next_to(space: Space, edge: str) -> tuple[Index, Index]:
-    """Control points of an edge, and those of the row next to it."""
-    along, end = EDGES[edge]
-    net = net_of(space, np.arange(float(space.count))[:, None])[..., 0]
-    rows = np.moveaxis(net, 1 - along, 0)
-    first, second = rows[[-1, -2]] if end else rows[[0, 1]]
-    return np.asarray(first, int), np.asarray(second, int)
 
 
 def _near(surface: Surface, support: Sliding) -> Array:
