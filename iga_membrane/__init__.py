@@ -56,7 +56,7 @@ _HOME = {
     "view.animation": ("animate",),
     "view.diagrams": ("plot_curves", "plot_phases"),
     "driver.lines": ("contact_lines",),
-    "view.export": ("save",),
+    "view.export": ("save", "writer"),
 }  # fmt: skip
 _MODULE = {name: module for module, names in _HOME.items() for name in names}
 

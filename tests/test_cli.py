@@ -14,7 +14,7 @@ from helpers import droplet_file
 
 import iga_membrane as iga
 from iga_membrane.cli import main
-from iga_membrane.view.export import WRITERS
+from iga_membrane.view.export import known_endings
 
 SCENE = droplet_file(150.0, 1.0, degree=3, elements=8)
 
@@ -99,7 +99,7 @@ def test_an_interrupt_exits_130(scene, tmp_path, monkeypatch):
 def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
     """S3, every kind of file: written to a device that is always full."""
     solution = iga.solve(iga.sessile_droplet(iga.Plane(contact_angle=90), volume=1.0))
-    endings = [ending for ending in WRITERS if ending not in (".png", ".forces.csv")]
+    endings = [ending for ending in known_endings() if ending not in (".png", ".forces.csv")]
 
     def on_a_full_device(suffix, prefix, folder):
         name = f"{folder}/{prefix}{suffix}"

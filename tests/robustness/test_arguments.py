@@ -148,6 +148,7 @@ GIVEN = {
     "tensor_space": lambda: {"one": basis(), "two": basis()},
     "to_geomdl": lambda: {"surface": iga.sheet(1.0, elements=3)},
     "trace": lambda: {"scene_at": angled, "values": [90.0, 100.0]},
+    "writer": lambda: {"ending": ".xyz"},
     # records that users make
     "BodyDensity": dict,
     "Centroid": lambda: {"axis": "x"},
