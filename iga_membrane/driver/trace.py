@@ -178,6 +178,10 @@ def walk(
             before, after = (s.measures["energy"] for s in (solution, fresh))
             if fresh.success and abs(after - before) <= SAME * abs(before):
                 solution, state = fresh, own
+        if solution.status is Status.INTERRUPTED:
+            # what was not judged is not kept: it is done again
+            late = "the CPU limit was reached before an equilibrium was judged"
+            return replace(state, status=solution.status, message=late), found
         found.append(solution)
         return state, found
 

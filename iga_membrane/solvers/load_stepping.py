@@ -136,7 +136,8 @@ def load_stepping(
         foretells a fold there, else STALLED.
     report : called with every load reached.
     reached : called with the scene and the state at each of the ramp's values; it returns the
-        state to go on from, and the solutions so far, which are kept with the progress.
+        state to go on from, with a status where the path is to end there, and the solutions so far,
+        which are kept with the progress.
     journal : of converged steps, to go on after an interruption.
     """
     journal = journal or Journal()
@@ -153,6 +154,8 @@ def load_stepping(
         if result.status is not None:
             return path
         path.result, found = reached(scene, result)
+        if path.result.status is not None:
+            return path
         _note(journal, path, step, assembly, found)
     attempts = replace(options, max_iterations=min(options.max_iterations, PATIENCE))
     ahead, aim = Foretold(), None
@@ -176,6 +179,8 @@ def load_stepping(
             report(load)
             if load == stop:
                 path.result, found = reached(scene, result)
+                if path.result.status is not None:
+                    break
             step *= 1.5 if len(result.iterations) > 5 else 2.0
             _note(journal, path, step, assembly, found)
             ahead.reached(load)

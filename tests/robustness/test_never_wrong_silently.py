@@ -164,8 +164,8 @@ def test_the_audit_sees_a_membrane_inside_its_sphere():
     sunk = surface.moved(points_of(surface.space, net))
     motion, load = assembly.spines.on(surface), np.zeros(surface.space.count)
     body = assembly.density(np.zeros(assembly.multipliers))
-    fine = audit(scene, surface, motion, body, load, assembly.points)
-    found = audit(scene, sunk, motion, body, load, assembly.points)
+    fine = audit(scene, surface, motion, body, load, assembly.points, assembly.contact)
+    found = audit(scene, sunk, motion, body, load, assembly.points, assembly.contact)
     assert fine.penetration < 1e-6
     assert found.penetration > 0.1
 
