@@ -19,11 +19,11 @@ from ..initial.toroid import End, least_energy_toroid
 from ..solids import Plane, Solid, Sphere
 from ..surface.ring import axisymmetric, ring_space
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from .smooth_foot import rest_of
 from .spec import BALL, Foot, Question, sector_of
 
 CLOSE = 0.5
-"""Gap between two solids over a droplet's length across which it bridges them easily: a wider one
-is approached from there where its own start fails."""
+"""Gap between two solids over a droplet's length across which it bridges them easily."""
 SMALL = 0.15
 """Radius of a particle on a plane's droplet, over the droplet's length, below which elements must
 crowd round it: from there on the force differs by 1e-6 between 20 and 40 elements here."""
@@ -76,6 +76,25 @@ def at_gap(ends: Ends, gap: float) -> Sphere:
     origin, axes = frame_of(ends)
     x, y, z = np.array(origin) + (gap + ends[1].radius) * axes[:, 2]
     return replace(ends[1], center=(float(x), float(y), float(z)))
+
+
+def easy_gap(parts: Question, ends: Ends) -> float | None:
+    """The gap from which a wider one is approached where its own start fails, or None if this one
+    is no wider.
+
+    Notes
+    -----
+    Solids that the liquid draws together it bridges easily when they are close. A drop that stands
+    up on the first would have to be crushed for that; on it the second floats, where a level
+    surface meets it at its contact angle, ``r (1 + cos(theta))`` deep.
+    """
+    scale, (first, second), gap = parts.scale, ends, gap_between(ends)
+    if gap <= CLOSE * scale.length:
+        return None
+    rest = rest_of(first, parts.liquid, scale, parts.down)
+    top = scale.length * (rest.lift + float(rest.pancake(np.ones(1))[1][0]))
+    floating = top - second.radius * (1.0 + float(np.cos(np.radians(second.contact_angle))))
+    return max(near for near in (CLOSE * scale.length, floating) if near < gap)
 
 
 def bridge(parts: Question, ends: Ends) -> Foot:

@@ -31,7 +31,7 @@ from ..terms import (
     Volume,
 )
 from ..terms.term import ROOM
-from .bridge import CLOSE, at_gap, bridge, ends_of, gap_between
+from .bridge import at_gap, bridge, easy_gap, ends_of, gap_between
 from .bridge import frame_of as frame_between
 from .contact_setup import CONTACT_LINES, foot_of
 from .continuation_path import from_alone, from_another_angle
@@ -136,10 +136,9 @@ def sessile_droplet(
     local = acceleration @ axes
     # a scene that is turned as a whole leans by rounding
     local[np.abs(local) <= ROUNDING * np.abs(local).max()] = 0.0
-    others: list[str] = []
-    if ends is None and (grains or penalty is not None or start is not None):
+    if grains or penalty is not None or start is not None:
         contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
-    elif ends is None:
+    else:
         pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
         contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in axes)
@@ -205,9 +204,11 @@ def sessile_droplet(
     )
     described = described_droplet(asked_substrate, volume, liquid, acceleration, hold, grains)
     ramp = None
-    if ends is not None and (gap := gap_between(ends)) > (near := CLOSE * length):
+    if ends is not None and (near := easy_gap(parts, ends)) is not None:
         ramp = Ramp(
-            "gap", (near, gap), lambda gap: again(particles=[*grains[:-1], at_gap(ends, gap)])
+            "gap",
+            (near, gap_between(ends)),
+            lambda gap: again(particles=[*grains[:-1], at_gap(ends, gap)]),
         )
     elif bond.any() and has_way:
         ramp = Ramp("gravity.acceleration", (0.0, pull), at)
@@ -233,16 +234,16 @@ def sessile_droplet(
     )
     if membrane is not None:
         return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
+    if others:
+        # a mesh that was chosen for one asperity says nothing of another's discretization
+        mesh = asked if grains else Discretization()
+        scene = replace(scene, otherwise=lambda: again(contact_line=others[0], discretization=mesh))
     if ends is not None or asked_substrate is None:
         toward = (
             axes[:, 2] * ([[1.0], [-1.0]] if asked_substrate is None else [[-1.0]])[: len(grains)]
         )
         gamma = liquid.surface_tension
         return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
-    if others:
-        # a mesh that was chosen for one asperity says nothing of another's discretization
-        mesh = asked if grains else Discretization()
-        scene = replace(scene, otherwise=lambda: again(contact_line=others[0], discretization=mesh))
     if grains:
         line, gamma = built.terms[-1], liquid.surface_tension
         if built.alone is None:

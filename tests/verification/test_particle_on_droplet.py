@@ -135,14 +135,15 @@ center = {list(given.center)}
     assert dict(read.measures) == dict(asked.measures)
 
 
-def on_top(height, *, hold="none", line="auto"):
+def on_top(height, *, hold="none", line="auto", radius=0.2, **mesh):
     return iga.sessile_droplet(
         PLANE,
         volume=UNIT_VOLUME,
         gravity=BOND,
         hold=hold,
-        particles=[iga.Sphere(90.0, 0.2, (0.0, 0.0, height))],
+        particles=[iga.Sphere(90.0, radius, (0.0, 0.0, height))],
         contact_line=line,
+        discretization=iga.Discretization(**mesh),
     )
 
 
@@ -154,11 +155,17 @@ def test_particle_on_top_carries_what_a_line_can():
     assert 0.95 < -force / (0.2 * np.pi) < 1.0
 
 
-@pytest.mark.slow
-def test_particle_above_what_a_line_can_carry_is_lost():
-    lost = iga.solve(on_top(2.0, hold="xy"), on_fail="return")
+@pytest.mark.parametrize(
+    ("radius", "height"), [(0.2, 2.0), pytest.param(0.16, 1.96, marks=pytest.mark.slow)]
+)
+def test_particle_above_what_a_line_can_carry_is_lost(radius, height):
+    lost = iga.solve(on_top(height, hold="xy", radius=radius, elements=12), on_fail="return")
     assert (lost.status, lost.kind) == (iga.Status.TOPOLOGY_CHANGE, "detached")
     assert not lost.forces[0].contact_line.any()
+    lo, hi = lost.bracket.lo, lost.bracket.hi
+    assert lost.bracket.parameter == "gap"
+    assert 1.9 - 0.2 < lo < hi < height - radius
+    assert hi - lo < 1e-3 * lo
 
 
 def test_droplet_slips_from_under_a_particle_that_presses_on_its_top():
