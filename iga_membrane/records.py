@@ -35,7 +35,9 @@ def encode(value: Any, arrays: dict[str, Array]) -> Any:
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, np.generic):
-        return value.item()
+        return encode(value.item(), arrays)
+    if isinstance(value, complex):
+        return {"complex": [value.real, value.imag]}
     if isinstance(value, np.ndarray):
         kind = {"f": float, "i": np.int64, "u": np.int64, "b": bool}[value.dtype.kind]
         kept = np.ascontiguousarray(value, kind).reshape(value.shape)
@@ -82,6 +84,8 @@ def decode(tree: Any, arrays: Mapping[str, Array], also: Sequence[type] = ()) ->
             if name not in arrays:
                 raise ValueError(f"array {name} is missing")
             return arrays[name]
+        case {"complex": [float(real), float(imaginary)]}:
+            return complex(real, imaginary)
         case {"map": list(items)}:
             return {str(key): decode(item, arrays, also) for key, item in items}
         case {"tuple": list(items)}:

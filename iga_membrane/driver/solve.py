@@ -14,6 +14,7 @@ from ..arguments import checked
 from ..assembly.lagrangian import Assembly
 from ..errors import SceneError, SolveError
 from ..own import begin
+from ..problems.recipe import Recipe
 from ..problems.scene import Scene
 from ..problems.well_posed import check_held
 from ..solvers.free_edge import tangent_edge
@@ -130,7 +131,7 @@ FAILED = frozenset(Status) - {Status.CONVERGED_STABLE, Status.INTERRUPTED, Statu
 
 def _either(
     first: Scene,
-    other: Callable[[], Scene],
+    other: Recipe,
     ends: frozenset[Status],
     options: SolverOptions,
     report: Callable[[float], None],
@@ -143,7 +144,7 @@ def _either(
     ends : of the first one after which the other is tried.
     """
     if options.start is not None and not fits(options.start, first):
-        return solve(other(), options, on_fail="return", report=report)
+        return solve(other.scene(), options, on_fail="return", report=report)
     started = thread_time()
     one = solve(first, options, on_fail="return", report=report)
     if one.status not in ends or one.mode_beyond_model:
@@ -152,7 +153,7 @@ def _either(
     left = max(started + options.max_cpu_s - thread_time(), 1e-3)
     own = replace(options, max_cpu_s=left, start=None)
     try:
-        two = solve(other(), own, on_fail="return", report=report)
+        two = solve(other.scene(), own, on_fail="return", report=report)
     except SceneError as error:
         return replace(one, message=f"{one.message}; in another discretization: {error}")
     told = two if two.status in DECIDED or one.status not in DECIDED else one

@@ -26,8 +26,8 @@ log = logging.getLogger("iga_membrane")
 def load(path: str | Path, *, also: Sequence[type] = ()) -> Solution:
     """Read back a solution, bit by bit as it was saved.
 
-    The scene comes with it but for its functions (``Ramp.scene_at``, ``FreeEdge``), which refuse
-    to be called: build the scene anew to solve it again.
+    The scene comes with it, with its ways round a failing solve, so it can be solved again. Of your
+    own, functions are not kept and refuse to be called: build such a scene anew.
 
     Parameters
     ----------

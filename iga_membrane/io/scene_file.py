@@ -138,19 +138,35 @@ def _along_path(data: Mapping[str, Any]) -> Scene:
     parameter, values = path["parameter"], path_values("path[0].values", path["values"])
     fixed = {key: value for key, value in data.items() if key != "path"}
 
-    def at(value: float) -> Scene:
-        return read_scene(with_number(fixed, "path[0].parameter", parameter, value)).scene
-
+    at = AlongTables(fixed, parameter)
     # one model and mesh for the whole path: the largest that any of its scenes needs
     scenes = [at(value) for value in values]
     model = min((scene.sector.model for scene in scenes), key=MODELS.index)
     meshes = [scene.description["discretization"]["elements"] for scene in scenes]
     mesh = dict(fixed.get("discretization", {}))
     fixed["discretization"] = {"model": model, "elements": max(meshes)} | mesh
+    at = AlongTables(fixed, parameter)
     end = at(values[-1])
     description = dict(end.description) | {"path": [{"parameter": parameter, "values": values}]}
     ramp = Ramp(parameter, values, at, asked=True, bound=end.bound(parameter))
     return replace(end, ramp=ramp, description=description)
+
+
+@dataclass(frozen=True)
+class AlongTables:
+    """Scenes of a scene file with one number changed.
+
+    Attributes
+    ----------
+    tables : of the file; parameter : path of the number.
+    """
+
+    tables: Mapping[str, Any]
+    parameter: str
+
+    def __call__(self, value: float) -> Scene:
+        changed = with_number(self.tables, "path[0].parameter", self.parameter, value)
+        return read_scene(changed).scene
 
 
 def with_number(

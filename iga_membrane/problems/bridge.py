@@ -8,7 +8,7 @@ it. It starts from the toroid of least energy.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from ..initial.toroid import End, least_energy_toroid
 from ..solids import Plane, Solid, Sphere
 from ..surface.ring import axisymmetric, ring_space
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from .recipe import Recipe
+from .scene import Scene
 from .smooth_foot import rest_of
 from .spec import BALL, Foot, Question, sector_of
 
@@ -76,6 +78,23 @@ def at_gap(ends: Ends, gap: float) -> Sphere:
     origin, axes = frame_of(ends)
     x, y, z = np.array(origin) + (gap + ends[1].radius) * axes[:, 2]
     return replace(ends[1], center=(float(x), float(y), float(z)))
+
+
+@dataclass(frozen=True)
+class AtGap:
+    """Scenes of two solids at other gaps.
+
+    Attributes
+    ----------
+    recipe : of the scene; ends : its two solids.
+    """
+
+    recipe: Recipe
+    ends: Ends
+
+    def __call__(self, gap: float) -> Scene:
+        particles = self.recipe.arguments["particles"]
+        return self.recipe.scene(particles=[*particles[:-1], at_gap(self.ends, gap)])
 
 
 def easy_gap(parts: Question, ends: Ends) -> float | None:

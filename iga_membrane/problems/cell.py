@@ -26,6 +26,7 @@ from ..surface.ring import axisymmetric, drop_space
 from ..surface.shapes import sheet
 from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
+from .recipe import Along, Recipe, family
 from .scene import Ramp, Scene
 from .whole_foot import adhesion
 
@@ -40,6 +41,7 @@ NARROW = 0.2
 largest pressure a round cell's gap of 0.1 needs twice the elements, one of 0.25 none more."""
 
 
+@family
 @checked(
     size="cell.size",
     pressure="cell.pressure",
@@ -123,19 +125,20 @@ def asperity_cell(
     carried = 2.0 * np.pi * r * liquid.surface_tension / (area - np.pi * r**2)
     law = None if penalty is None else penalty * liquid.surface_tension / r**2
 
-    def at(value: float) -> Scene:
-        return asperity_cell(
-            sphere,
-            size=size,
-            pressure=value,
-            shape=shape,
-            liquid=liquid,
-            discretization=Discretization(mesh.space, mesh.degree, mesh.elements, model),
-            penalty=penalty,
-            penetration_tolerance=penetration_tolerance,
-            contact_line=contact_line,
-        )
-
+    recipe = Recipe(
+        "asperity_cell",
+        {
+            "sphere": sphere,
+            "size": size,
+            "pressure": pressure,
+            "shape": shape,
+            "liquid": liquid,
+            "discretization": Discretization(mesh.space, mesh.degree, mesh.elements, model),
+            "penalty": penalty,
+            "penetration_tolerance": penetration_tolerance,
+            "contact_line": contact_line,
+        },
+    )
     begin, beyond = 0.5 * pressure, lying and pressure >= carried
     if beyond:
         begin = NEARLY * carried
@@ -161,12 +164,13 @@ def asperity_cell(
         ramp=Ramp(
             "cell.pressure",
             (begin, pressure),
-            at,
+            Along(recipe, "cell.pressure"),
             only=beyond,
             bound=carried if lying else None,
         ),
         substrate=sphere,
         kind="asperity_cell",
+        recipe=recipe,
         description=_describe(sphere, size, pressure, shape, liquid, mesh, model),
     )
 

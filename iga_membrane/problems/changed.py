@@ -10,14 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..checks import shown
 from ..errors import SceneError
 from ..terms import Gravity, LineTerm, Scale, Term
-
-if TYPE_CHECKING:
-    from .scene import Scene
+from .posed import Posed
 
 ASKED = (
     "terms", "supports", "scale", "motion", "substrate", "particles", "hold", "acceleration",
@@ -41,13 +39,13 @@ class Origin:
     ways: Mapping[str, Any] = field(repr=False)
 
 
-def origin_of(scene: Scene) -> Origin:
+def origin_of(scene: Posed) -> Origin:
     """What a scene is."""
     asked = {name: getattr(scene, name) for name in ASKED} | {"space": scene.surface.space}
     return Origin(asked, {name: getattr(scene, name) for name in WAYS})
 
 
-def adapted(scene: Scene, origin: Origin) -> dict[str, Any]:
+def adapted(scene: Posed, origin: Origin) -> dict[str, Any]:
     """Fields of a scene that follow from what was replaced since its origin.
 
     Raises
@@ -73,7 +71,7 @@ def adapted(scene: Scene, origin: Origin) -> dict[str, Any]:
             f"{fields}: replaced in a scene with a path of its own, which leads to the scene "
             "before; give another ramp, or ramp=None"
         )
-    found: dict[str, Any] = dict.fromkeys(stale)
+    found: dict[str, Any] = dict.fromkeys([*stale, "recipe"])
     weight = _weight(scene, before) if "terms" in changed else {}
     if "predictor" in stale and changed == ["terms"]:
         found["predictor"] = _predictor(scene, before["terms"], weight)
@@ -95,7 +93,7 @@ def adapted(scene: Scene, origin: Origin) -> dict[str, Any]:
     )
 
 
-def _check(scene: Scene, before: Mapping[str, Any], changed: Sequence[str]) -> None:
+def _check(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> None:
     """Refuse what contradicts the rest of the scene."""
     alone = {
         "substrate": "the terms know the solid, too",
@@ -129,7 +127,7 @@ def _check(scene: Scene, before: Mapping[str, Any], changed: Sequence[str]) -> N
         )
 
 
-def _weight(scene: Scene, before: Mapping[str, Any]) -> dict[str, Any]:
+def _weight(scene: Posed, before: Mapping[str, Any]) -> dict[str, Any]:
     """Acceleration and density of the liquid, which follow the term of its weight."""
     now, then = (
         tuple(t for t in terms if isinstance(t, Gravity))
@@ -148,7 +146,7 @@ def _weight(scene: Scene, before: Mapping[str, Any]) -> dict[str, Any]:
     return {"acceleration": pull, "liquid_density": density}
 
 
-def _predictor(scene: Scene, before: Sequence[Term], weight: Mapping[str, Any]) -> Scene | None:
+def _predictor(scene: Posed, before: Sequence[Term], weight: Mapping[str, Any]) -> Any:
     """The nearby scene with the terms that were replaced; None where it does not share them."""
     near = scene.predictor
     assert near is not None

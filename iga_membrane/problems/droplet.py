@@ -31,20 +31,21 @@ from ..terms import (
     Volume,
 )
 from ..terms.term import ROOM
-from .bridge import at_gap, bridge, easy_gap, ends_of, gap_between
+from .bridge import AtGap, bridge, easy_gap, ends_of, gap_between
 from .bridge import frame_of as frame_between
 from .contact_setup import CONTACT_LINES, foot_of
 from .continuation_path import from_alone, from_another_angle
 from .description import described_droplet
-from .free import at_displacement, frame_of, pulled_by, seat_of
+from .free import Displaced, frame_of, pulled_by, seat_of
+from .free_rim import RimOnPlane
 from .hints import hints
 from .moving import check_fixed, fixed, moving
 from .one_asperity import discretizations as asperity_lines
 from .osman_sauer import WholeMembrane, droplet_with_wetted_part
 from .particle_foot import discretizations as particle_lines
 from .particle_foot import with_particles
-from .scene import FreeEdge, Ramp, Scene
-from .smooth_foot import rim_radius, with_rim
+from .recipe import Along, Recipe, family
+from .scene import Ramp, Scene
 from .spec import Question
 
 ROUNDING = 1e-12
@@ -58,6 +59,7 @@ def _acceleration(field: str, value: Any) -> tuple[float, float, float]:
     return 0.0, 0.0, -number("gravity.acceleration", value, least=0.0)
 
 
+@family
 @checked(
     volume="liquid.volume",
     gravity=_acceleration,
@@ -175,8 +177,9 @@ def sessile_droplet(
     terms += [Centroid(axis) for axis in movable if axis in pinned or axis in held]
     pull = float(np.linalg.norm(acceleration))
 
-    def again(**changed: Any) -> Scene:
-        given: dict[str, Any] = {
+    recipe = Recipe(
+        "sessile_droplet",
+        {
             "substrate": asked_substrate,
             "volume": volume,
             "liquid": liquid,
@@ -187,15 +190,8 @@ def sessile_droplet(
             "particles": fixed(grains),
             "penalty": penalty,
             "penetration_tolerance": penetration_tolerance,
-        }
-        return sessile_droplet(**given | changed)
-
-    def at(size: float) -> Scene:
-        return again(gravity=[size / pull * g for g in acceleration])
-
-    def moved(displacement: float) -> Sphere:
-        return at_displacement(grains[0], length, displacement)
-
+        },
+    )
     # at 180 degrees on a plane there is nothing to start from without gravity
     has_way = (
         isinstance(substrate, Sphere)
@@ -208,13 +204,13 @@ def sessile_droplet(
         ramp = Ramp(
             "gap",
             (near, gap_between(ends)),
-            lambda gap: again(particles=[*grains[:-1], at_gap(ends, gap)]),
+            AtGap(recipe, ends),
         )
     elif bond.any() and has_way:
-        ramp = Ramp("gravity.acceleration", (0.0, pull), at)
+        ramp = Ramp("gravity.acceleration", (0.0, pull), Along(recipe, "gravity.acceleration"))
     elif asked_substrate is None and held:
         values = (0.0, pulled_by(grains[0], length))
-        ramp = Ramp("particle[0] displacement", values, lambda d: again(particles=[moved(d)]))
+        ramp = Ramp("particle[0] displacement", values, Displaced(recipe, grains[0], length))
     scene = Scene(
         built.surface,
         [*terms, *built.terms],
@@ -228,6 +224,7 @@ def sessile_droplet(
         acceleration=vector("gravity", acceleration),
         liquid_density=liquid.density,
         hold=held,
+        recipe=recipe,
         kind="sessile_droplet",
         description=described | {"discretization": built.mesh.described(sector.model)},
         warnings=hints(substrate, liquid, volume, pull, tuple(bond)),
@@ -237,17 +234,18 @@ def sessile_droplet(
     if others:
         # a mesh that was chosen for one asperity says nothing of another's discretization
         mesh = asked if grains else Discretization()
-        scene = replace(scene, otherwise=lambda: again(contact_line=others[0], discretization=mesh))
+        other = recipe.changed(contact_line=others[0], discretization=mesh)
+        scene = replace(scene, otherwise=other)
     if ends is not None or asked_substrate is None:
         toward = (
             axes[:, 2] * ([[1.0], [-1.0]] if asked_substrate is None else [[-1.0]])[: len(grains)]
         )
         gamma = liquid.surface_tension
-        return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+        return moving(scene, grains, toward, gamma, recipe)
     if grains:
         line, gamma = built.terms[-1], liquid.surface_tension
         if built.alone is None:
-            alone = again(
+            alone = recipe.scene(
                 particles=(), hold="none", discretization=Discretization(), contact_line="auto"
             )
         else:
@@ -258,29 +256,16 @@ def sessile_droplet(
         scene = from_alone(scene, alone)
         assert isinstance(line, (TrimmedContactLine, SphereContactLine))
         toward = np.atleast_2d(np.array(line.toward))
-        return moving(scene, grains, toward, gamma, lambda at: again(particles=at))
+        return moving(scene, grains, toward, gamma, recipe)
     if built.directions is not None and asked.elements is None and start is None:
         twice = replace(asked, model=sector.model, elements=2 * built.mesh.elements)
-        scene = replace(scene, finer=lambda: again(discretization=twice))
+        scene = replace(scene, finer=recipe.changed(discretization=twice))
     if built.predictor:
         return from_another_angle(scene, terms, built)
     if not built.tangent:
         return scene
 
-    def edge_at(of: Scene, radius: float) -> Surface:
-        return with_rim(of.surface, radius, of.units)
-
-    def foretold(of: Scene) -> Surface:
-        held = next((t.value for t in of.terms if isinstance(t, Volume)), volume)
-        weight = tuple(of.acceleration), of.liquid_density
-        own = tuple(float(g) for g in acceleration), liquid.density
-        if (held, weight) == (volume, own) or not any(weight[0]):
-            return of.surface
-        heavy = replace(liquid, density=of.liquid_density)
-        fresh = again(volume=held, gravity=of.acceleration, liquid=heavy)
-        return of.surface.moved(fresh.surface.points)
-
-    return replace(scene, free_edge=FreeEdge(edge_at, rim_radius, foretold))
+    return replace(scene, free_edge=RimOnPlane(recipe))
 
 
 def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:

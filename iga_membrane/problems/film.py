@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,14 @@ from ..errors import SceneError
 from ..initial.liquid import Discretization, Liquid, Mesh, with_defaults
 from ..surface.ring import axisymmetric, ring_space
 from ..terms import Pressure, Scale, SurfaceTension, Term, Volume
+from .recipe import Recipe, family
 from .scene import Ramp, Scene
 
 SLENDER = 0.4
 """Half height over radius at which every film starts its ramp: well below any limit."""
 
 
+@family
 @checked("rings")
 def film_between_rings(
     *,
@@ -67,28 +70,48 @@ def film_between_rings(
         s = 2.0 * t - 1.0
         return radius * (1.0 + bulge * (1.0 - s * s)), half_height * s, -4.0 * bulge * s * radius
 
-    def at(value: float) -> Scene:
-        scaled = None if volume is None else volume * value / half_height
-        return film_between_rings(
-            radius=radius,
-            half_height=value,
-            liquid=liquid,
-            volume=scaled,
-            pressure=pressure,
-            discretization=Discretization(mesh.space, mesh.degree, mesh.elements, model),
-        )
-
+    recipe = Recipe(
+        "film_between_rings",
+        {
+            "radius": radius,
+            "half_height": half_height,
+            "liquid": liquid,
+            "volume": volume,
+            "pressure": pressure,
+            "discretization": Discretization(mesh.space, mesh.degree, mesh.elements, model),
+        },
+    )
     space = ring_space(mesh.space, mesh.degree, mesh.elements, angle=0.5 * np.pi)
     start = min(half_height, SLENDER * radius)
+    ramp = Ramp("rings.half_height", (start, half_height), Stretched(recipe))
     return Scene(
         axisymmetric(space, profile),
         terms,
         (Fixed("xi2=0"), Fixed("xi2=1"), Sector(model)),
         scale=Scale(radius, liquid.surface_tension),
-        ramp=Ramp("rings.half_height", (start, half_height), at) if start < half_height else None,
+        ramp=ramp if start < half_height else None,
         kind="film_between_rings",
+        recipe=recipe,
         description=_describe(radius, half_height, liquid, volume, pressure, mesh, model),
     )
+
+
+@dataclass(frozen=True)
+class Stretched:
+    """Films between rings farther apart, of the same mean radius.
+
+    Attributes
+    ----------
+    recipe : of the film.
+    """
+
+    recipe: Recipe
+
+    def __call__(self, half_height: float) -> Scene:
+        asked = self.recipe.arguments
+        volume = asked["volume"]
+        scaled = None if volume is None else volume * half_height / asked["half_height"]
+        return self.recipe.scene(half_height=half_height, volume=scaled)
 
 
 def _bulge(ratio: float) -> float:

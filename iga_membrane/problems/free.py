@@ -6,7 +6,7 @@ Its frame has its origin at the world's and the axis z from the particle to ther
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from ..arrays import Array
 from ..errors import SceneError
 from ..initial.profiles import drop_on_sphere
 from ..solids import Plane, Sphere
+from .recipe import Recipe
+from .scene import Scene
 
 HOLDS = ("none", "xyz")
 
@@ -73,6 +75,24 @@ def at_displacement(particle: Sphere, length: float, displacement: float) -> Sph
     part = (_rest(particle, length) + displacement) / distance
     x, y, z = (part * c for c in particle.center)
     return replace(particle, center=(x, y, z), motion="fixed")
+
+
+@dataclass(frozen=True)
+class Displaced:
+    """Scenes of a free droplet with its particle farther out.
+
+    Attributes
+    ----------
+    recipe : of the scene; particle : where it is in the end; length : of the droplet.
+    """
+
+    recipe: Recipe
+    particle: Sphere
+    length: float
+
+    def __call__(self, displacement: float) -> Scene:
+        moved = at_displacement(self.particle, self.length, displacement)
+        return self.recipe.scene(particles=[moved])
 
 
 def _rest(particle: Sphere, length: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import SceneError
 from ..solids import Plane, Sphere
+from .recipe import Recipe
 from .scene import FreeParticles, Scene
 
 VERTICAL = (0.0, 0.0, 1.0)
@@ -39,7 +40,8 @@ def moving(
     particles: Sequence[Sphere],
     toward: Array,
     tension: float,
-    scene_of: Callable[[Sequence[Sphere]], Scene],
+    recipe: Recipe,
+    argument: str = "particles",
 ) -> Scene:
     """The scene, with those of its particles free to move whose motion says so.
 
@@ -47,7 +49,7 @@ def moving(
     ----------
     scene : with all its particles fixed.
     toward : (n, 3) unit vectors from the particles into the liquid.
-    scene_of : fixed particles to a scene of the same kind.
+    recipe : of the same scene with its particles fixed; argument : of it that is theirs.
 
     Raises
     ------
@@ -77,13 +79,6 @@ def moving(
         least.append(stop)
     along, held = np.array(lines), fixed(particles)
 
-    def scene_at(displacement: Array) -> Scene:
-        moved = list(held)
-        for i, line, way in zip(which, along, displacement, strict=True):
-            x, y, z = (float(c) for c in np.array(held[i].center) + way * line)
-            moved[i] = replace(held[i], center=(x, y, z))
-        return scene_of(moved)
-
     free = FreeParticles(
         np.array(which),
         along,
@@ -91,6 +86,8 @@ def moving(
         tension,
         -np.einsum("ki,ki->k", along, toward[which]),
         np.array(least),
-        scene_at,
+        recipe,
+        argument,
+        held,
     )
     return replace(scene, free_particles=free)

@@ -96,17 +96,12 @@ def sheet_with_wetted_part(
     first = Sphere(max(EASY, particle.contact_angle), particle.radius, particle.center)
     surface = _sheet_start(space, first, 0.5 * size, boundary)
 
-    def line(angle: float) -> list[Term]:
-        at = replace(particle, contact_angle=angle)
-        edge = _edge(space)
-        wetting = SphereContactLine(gamma, at, edge, covered=True)
-        return [wetting, NormalLineLoad(gamma, at, edge)]
-
+    line = LineOnSolid(particle, gamma, _edge(space))
     scale = Scale(particle.radius, gamma)
     supports: list[Support] = [sector, Fixed("xi2=0"), Fixed("xi2=1")]
     scene = Scene(
         surface,
-        [*_skin(particle, gamma, scale, how), *line(first.contact_angle)],
+        [*_skin(particle, gamma, scale, how), *line.terms(first.contact_angle)],
         supports,
         scale=scale,
         motion="cartesian",
@@ -151,15 +146,11 @@ def droplet_with_wetted_part(
     local = _droplet_start(space, pancake)
     first = replace(plane, contact_angle=max(EASY, plane.contact_angle))
 
-    def line(angle: float) -> list[Term]:
-        edge = _edge(space)
-        wetting = PlaneContactLine(gamma, angle, edge, covered=True)
-        return [wetting, NormalLineLoad(gamma, replace(plane, contact_angle=angle), edge)]
-
+    line = LineOnSolid(plane, gamma, _edge(space))
     kept = [t for t in scene.terms if t.name in ("volume", "gravity")]
     whole = Scene(
         local.moved(scale.to_world(local.points)),
-        [*_skin(plane, gamma, scale, how), *kept, *line(first.contact_angle)],
+        [*_skin(plane, gamma, scale, how), *kept, *line.terms(first.contact_angle)],
         [scene.sector, Fixed("xi2=0")],
         scale=scale,
         motion="cartesian",
@@ -218,18 +209,56 @@ def _stepped(
     parameter: str,
     first: Plane | Sphere,
     solid: Plane | Sphere,
-    line: Any,
+    line: LineOnSolid,
     how: WholeMembrane,
 ) -> Scene:
     """The scene at its own angle, with the steps to it as its ramp."""
-    held = scene.terms[: len(scene.terms) - len(line(EASY))]
-
-    def at(angle: float) -> Scene:
-        return replace(scene, terms=[*held, *line(angle)], ramp=None, origin=None)
-
+    at = AtAngle(scene, line)
     angles = np.linspace(first.contact_angle, solid.contact_angle, how.load_steps + 1)
     values = tuple(float(a) for a in angles)
     return replace(at(solid.contact_angle), ramp=Ramp(parameter, values, at))
+
+
+@dataclass(frozen=True)
+class LineOnSolid:
+    """The line inside a whole membrane: what wetting gains there, and the paper's load.
+
+    Attributes
+    ----------
+    solid : plane or sphere; gamma : surface tension; edge : where in the patch the line is.
+    """
+
+    solid: Plane | Sphere
+    gamma: float
+    edge: str
+
+    def terms(self, angle: float) -> list[Term]:
+        """At a contact angle."""
+        solid = replace(self.solid, contact_angle=angle)
+        wetting: Term = (
+            SphereContactLine(self.gamma, solid, self.edge, covered=True)
+            if isinstance(solid, Sphere)
+            else PlaneContactLine(self.gamma, angle, self.edge, covered=True)
+        )
+        return [wetting, NormalLineLoad(self.gamma, solid, self.edge)]
+
+
+@dataclass(frozen=True)
+class AtAngle:
+    """A scene with a whole membrane at other contact angles.
+
+    Attributes
+    ----------
+    scene : whose last terms are those of its line; line : which they are.
+    """
+
+    scene: Scene
+    line: LineOnSolid
+
+    def __call__(self, angle: float) -> Scene:
+        line = self.line.terms(angle)
+        held = self.scene.terms[: len(self.scene.terms) - len(line)]
+        return replace(self.scene, terms=[*held, *line], ramp=None, origin=None)
 
 
 def _kink(elements: int) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,8 +13,9 @@ from ..errors import SceneError
 from ..initial.liquid import MODELS, Mesh
 from ..initial.particle_edge import ending_on, ending_space, seat_of
 from ..initial.particle_placement import as_list, check_reach, mirrored_model, towards_liquid
-from ..initial.round_patch import of_droplet, of_pancake, round_patch
+from ..initial.round_patch import RoundPatch, of_droplet, of_pancake, round_patch
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..splines import Space
 from ..surface.surface import Surface
 from ..terms import SphereContactLine, TrimmedContactLine
 from .contact_setup import foot_of
@@ -149,12 +150,23 @@ def _on_a_plane(parts: Question) -> Foot:
 
     # far from the line its conormals may point against the membrane's normals
     support = [Sliding("xi2=0", reach=REACH)]
+    start_from = RoundParticles(patch)
+    return Foot(surface, sector, mesh, [rest.line, line], support, start_from=start_from)
 
-    def from_alone(alone: Surface) -> Surface:
-        """Start, in the scene's scale, from the droplet without particles."""
-        return patch.surface(of_droplet(alone))
 
-    return Foot(surface, sector, mesh, [rest.line, line], support, start_from=from_alone)
+@dataclass(frozen=True)
+class RoundParticles:
+    """Start, in the scene's scale, from the droplet without particles.
+
+    Attributes
+    ----------
+    patch : its control points crowd round the particles.
+    """
+
+    patch: RoundPatch
+
+    def __call__(self, alone: Surface) -> Surface:
+        return self.patch.surface(of_droplet(alone))
 
 
 def _ending_on(parts: Question, local: Sphere, sector: Sector, mesh: Mesh, rest: Rest) -> Foot:
@@ -171,9 +183,21 @@ def _ending_on(parts: Question, local: Sphere, sector: Sector, mesh: Mesh, rest:
     line = SphereContactLine(gamma, particle, "xi2=1", toward=(x, y, z))
     surface = start.moved(scale.to_world(start.points))
     support = [Sliding("xi2=0", reach=REACH), Sliding("xi2=1", particle)]
+    lines, start_from = [rest.line, line], EndingOn(local, space)
+    return Foot(surface, sector, mesh, lines, support, None, start_from=start_from)
 
-    def from_alone(alone: Surface) -> Surface:
-        return ending_on(of_droplet(alone), local, space)
 
-    lines = [rest.line, line]
-    return Foot(surface, sector, mesh, lines, support, None, start_from=from_alone)
+@dataclass(frozen=True)
+class EndingOn:
+    """Start, in the scene's scale, from the droplet without its particle.
+
+    Attributes
+    ----------
+    particle : on which the membrane ends, in that scale; space : of the start.
+    """
+
+    particle: Sphere
+    space: Space
+
+    def __call__(self, alone: Surface) -> Surface:
+        return ending_on(of_droplet(alone), self.particle, self.space)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import array, record, words
+from ..checks import array, listed, number, record, words
 from ..dofs.boundary_conditions import Fixed, Sector, Sliding, Support, Symmetry
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
@@ -30,6 +30,7 @@ from ..terms import (
 )
 from ..terms.own import scaled_term
 from .changed import Origin, adapted, origin_of
+from .recipe import Recipe
 from .well_posed import check_mirrors, check_parts
 
 
@@ -86,22 +87,22 @@ class Ramp:
         return scene
 
 
-@dataclass(frozen=True)
 class FreeEdge:
     """An edge at 180 degrees: the membrane leaves a smooth solid tangentially, at a place to be
-    found.
-
-    Attributes
-    ----------
-    surface_at : a scene and a coordinate of the edge on its solid, a radius or an angle, to a start
-        whose edge is there.
-    place_of : the coordinate of a surface's edge, in the scene's scale.
-    foretold : a scene to its start, with the edge where its own weight and volume foretell it.
+    found. The place is a coordinate of the edge on its solid, a radius or an angle.
     """
 
-    surface_at: Callable[[Scene, float], Surface] = field(repr=False)
-    place_of: Callable[[Surface], float] = field(repr=False)
-    foretold: Callable[[Scene], Surface] = field(repr=False)
+    def surface_at(self, scene: Scene, place: float) -> Surface:
+        """A scene's start with its edge at a place."""
+        raise NotImplementedError
+
+    def place_of(self, surface: Surface) -> float:
+        """The coordinate of a surface's edge, in the scene's scale."""
+        raise NotImplementedError
+
+    def foretold(self, scene: Scene) -> Surface:
+        """A scene's start, with the edge where its own weight and volume foretell it."""
+        return scene.surface
 
     def fixed_at(self, scene: Scene, place: float) -> Scene:
         """A scene with its edge at another place."""
@@ -118,7 +119,8 @@ class FreeParticles:
     lines : (k, 3) unit vectors; radii : (k,) of the particles; tension : of the liquid.
     outward : (k,) part of the direction out of the liquid along each line.
     least : (k,) displacement at which the substrate stops a particle, -inf without.
-    scene_at : displacements (k,) along the lines to the scene with its particles fixed there.
+    recipe : of the scene with its particles fixed; argument : of it that is theirs.
+    held : the particles where they are now, fixed.
     """
 
     which: Array
@@ -127,7 +129,19 @@ class FreeParticles:
     tension: float
     outward: Array
     least: Array
-    scene_at: Callable[[Array], Scene] = field(repr=False)
+    recipe: Recipe = field(repr=False)
+    argument: str
+    held: tuple[Sphere, ...]
+
+    def scene_at(self, displacement: Array) -> Scene:
+        """The scene with its particles fixed at displacements (k,) along the lines."""
+        moved = list(self.held)
+        for i, line, way in zip(self.which, self.lines, displacement, strict=True):
+            x, y, z = (float(c) for c in np.array(moved[i].center) + way * line)
+            moved[i] = replace(moved[i], center=(x, y, z))
+        several = listed(self.recipe.arguments[self.argument])
+        scene: Scene = self.recipe.scene(**{self.argument: moved if several else moved[0]})
+        return scene
 
 
 @dataclass(frozen=True)
@@ -157,8 +171,8 @@ class Scene:
         start from it.
     start_from : that equilibrium's surface to one of this scene's space, both in their scales, if
         the spaces differ.
-    otherwise : the same question in another discretization, tried where this one fails.
-    finer : the same question on a finer mesh, tried where the audit finds this one too coarse.
+    otherwise : how to ask the same in another discretization, tried where this one fails.
+    finer : how to ask the same on a finer mesh, tried where the audit finds this one too coarse.
     free_edge : the way to find a fixed edge's place at 180 degrees.
     free_particles : those that move.
     substrate : the solid that the membrane touches, for its kind and pictures.
@@ -169,6 +183,7 @@ class Scene:
     kind : name of the family, which decides the measures of a solution.
     description : the scene in words of the scene file, for the result.
     warnings : what a user should know about the input.
+    recipe : how the scene was asked for, or None if it was built from its parts.
     origin : what the ways were made for; None makes them this scene's own. A scene of which fields
         were replaced leaves out the ways of the one before (:mod:`.changed`).
     """
@@ -183,8 +198,8 @@ class Scene:
     ramp: Ramp | None = field(default=None, repr=False)
     predictor: Scene | None = field(default=None, repr=False)
     start_from: Callable[[Surface], Surface] | None = field(default=None, repr=False)
-    otherwise: Callable[[], Scene] | None = field(default=None, repr=False)
-    finer: Callable[[], Scene] | None = field(default=None, repr=False)
+    otherwise: Recipe | None = field(default=None, repr=False)
+    finer: Recipe | None = field(default=None, repr=False)
     free_edge: FreeEdge | None = field(default=None, repr=False)
     free_particles: FreeParticles | None = field(default=None, repr=False)
     substrate: Solid | None = None
@@ -195,6 +210,7 @@ class Scene:
     kind: str = "membrane"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     warnings: Sequence[str] = ()
+    recipe: Recipe | None = field(default=None, repr=False, compare=False)
     origin: Origin | None = field(default=None, repr=False, compare=False, metadata={"kept": False})
 
     def __post_init__(self) -> None:
@@ -209,6 +225,35 @@ class Scene:
             object.__setattr__(self, "scale", Scale(self.surface.size, tension))
         check_mirrors(self)
         object.__setattr__(self, "origin", origin_of(self))
+
+    @checked(value=number)
+    def at(self, path: str, value: float) -> Scene:
+        """The scene with one number changed.
+
+        Parameters
+        ----------
+        path : of the number in the words of the scene file, "substrate.contact_angle",
+            "liquid.volume", "gravity.acceleration", "particle[0].center[2]".
+        value : of the number, in the user's units.
+
+        Returns
+        -------
+        Scene
+            Built anew, with the ways round a failing solve that are its own.
+
+        Raises
+        ------
+        SceneError
+            There is no such number, or it is out of its range; or the scene was built from its
+            parts, or parts of it were replaced: build it anew instead.
+        """
+        if self.recipe is None:
+            raise SceneError(
+                f"path = {path!r}: this scene was built from its parts, or parts of it were "
+                "replaced; build it anew with the number changed"
+            )
+        scene: Scene = self.recipe.at(path, value).scene()
+        return scene
 
     def bound(self, parameter: str) -> float | None:
         """Value of a parameter from which on a balance of forces rules out every equilibrium, where

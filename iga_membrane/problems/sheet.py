@@ -5,7 +5,7 @@ The rim is fixed at z = 0, the liquid lies above the membrane and gas below.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,6 +44,7 @@ from ..units import implausible
 from .description import described_particle
 from .moving import moving
 from .osman_sauer import WholeMembrane, sheet_with_wetted_part
+from .recipe import Along, Recipe, family
 from .scene import FreeEdge, Ramp, Scene
 
 CONTACT_LINES = ("auto", "conforming", "trimmed")
@@ -51,6 +52,7 @@ THROUGH = {"degree": 3, "elements": 40}
 """Mesh of a sheet that passes through its particle."""
 
 
+@family
 @checked(
     "sheet",
     gravity="gravity.acceleration",
@@ -150,8 +152,9 @@ def liquid_sheet(
     if liquid_weight and gravity * liquid.density:
         terms.append(Gravity(liquid.density, (0.0, 0.0, -gravity)))
 
-    def again(**changed: Any) -> Scene:
-        given: dict[str, Any] = {
+    recipe = Recipe(
+        "liquid_sheet",
+        {
             "particle": particle,
             "size": size,
             "boundary": boundary,
@@ -162,8 +165,8 @@ def liquid_sheet(
             "liquid_weight": liquid_weight,
             "discretization": Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
             "contact_line": contact_line,
-        }
-        return liquid_sheet(**given | changed)
+        },
+    )
 
     ramp, directions = None, None
     if through and particle is not None:
@@ -172,18 +175,12 @@ def liquid_sheet(
     elif start is None:
         surface = _start(particle, size, boundary, mesh, (pressure or 0.0) / gamma, volume)
         if particle is not None:
-            own = particle
-
-            def at_angle(angle: float) -> Scene:
-                return again(particle=replace(own, contact_angle=angle))
-
             if particle.contact_angle != EASY and not tangent:
-                values = (EASY, particle.contact_angle)
-                ramp = Ramp("particle[0].contact_angle", values, at_angle)
+                ramp = _ramp(recipe, "particle[0].contact_angle", EASY, particle.contact_angle)
         elif pressure:
-            ramp = Ramp("sheet.pressure", (0.0, pressure), lambda p: again(pressure=p))
+            ramp = _ramp(recipe, "sheet.pressure", 0.0, pressure)
         elif volume:
-            ramp = Ramp("sheet.volume", (0.0, volume), lambda v: again(volume=v))
+            ramp = _ramp(recipe, "sheet.volume", 0.0, volume)
     else:
         surface = start
         check_net(start, _space(particle, boundary, mesh))
@@ -199,6 +196,7 @@ def liquid_sheet(
         directions=directions,
         substrate=particle,
         kind="liquid_sheet",
+        recipe=recipe.changed(start=start),
         acceleration=(0.0, 0.0, -gravity),
         liquid_density=liquid.density,
         description=described,
@@ -207,23 +205,33 @@ def liquid_sheet(
     if particle is None:
         return scene
     if tangent:
-        scene = replace(scene, free_edge=_free_edge(scene))
+        scene = replace(scene, free_edge=EdgeOnSphere(particle))
     liquid_above = np.array([[0.0, 0.0, 1.0]])
-    return moving(
-        scene, [particle], liquid_above, gamma, lambda at: again(particle=at[0], start=start)
-    )
+    started = recipe.changed(start=start)
+    return moving(scene, [particle], liquid_above, gamma, started, "particle")
 
 
-def _free_edge(scene: Scene) -> FreeEdge:
-    """The way to the edge on a particle at 180 degrees."""
-    particle = scene.substrate
-    assert isinstance(particle, Sphere)
-    ball = Scale(particle.radius).local_sphere(particle)
+def _ramp(recipe: Recipe, path: str, first: float, last: float) -> Ramp:
+    """The way along one number."""
+    return Ramp(path, (first, last), Along(recipe, path))
 
-    def edge_at(of: Scene, polar: float) -> Surface:
-        return _with_edge(of.surface, particle, polar)
 
-    return FreeEdge(edge_at, lambda at: _edge_polar(at, ball), lambda of: of.surface)
+@dataclass(frozen=True)
+class EdgeOnSphere(FreeEdge):
+    """The edge on a particle at 180 degrees, by its polar angle.
+
+    Attributes
+    ----------
+    particle : in the user's units.
+    """
+
+    particle: Sphere
+
+    def surface_at(self, scene: Scene, place: float) -> Surface:
+        return _with_edge(scene.surface, self.particle, place)
+
+    def place_of(self, surface: Surface) -> float:
+        return _edge_polar(surface, Scale(self.particle.radius).local_sphere(self.particle))
 
 
 def _edge_polar(surface: Surface, ball: Sphere) -> float:

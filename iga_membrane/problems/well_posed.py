@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..arrays import Array
@@ -19,12 +17,10 @@ from ..terms import (
     TrimmedContactLine,
     WettingLine,
 )
-
-if TYPE_CHECKING:
-    from .scene import Scene
+from .posed import Posed
 
 
-def check_parts(scene: Scene) -> None:
+def check_parts(scene: Posed) -> None:
     """Refuse parts that do not go together.
 
     Raises
@@ -71,7 +67,7 @@ def check_parts(scene: Scene) -> None:
     _check_weight(scene)
 
 
-def check_mirrors(scene: Scene) -> None:
+def check_mirrors(scene: Posed) -> None:
     """Refuse a model whose mirror planes the terms do not have."""
     model, mirrored = scene.sector.model, scene.sector.mirrored
     for term in scene.terms:
@@ -97,7 +93,7 @@ def check_mirrors(scene: Scene) -> None:
             _check_mirror(scene, term, here, here[:, [1, 0, 2]], "x = y")
 
 
-def _check_mirror(scene: Scene, term: LocalGap, here: Array, there: Array, plane: str) -> None:
+def _check_mirror(scene: Posed, term: LocalGap, here: Array, there: Array, plane: str) -> None:
     """Refuse a law of the gap to a solid without a mirror plane of the model."""
     off = np.abs(term.at(there).at.gap - term.at(here).at.gap).max()
     if not off <= 1e-9:
@@ -107,7 +103,7 @@ def _check_mirror(scene: Scene, term: LocalGap, here: Array, there: Array, plane
         )
 
 
-def _check_gaps(scene: Scene) -> None:
+def _check_gaps(scene: Posed) -> None:
     """Refuse a law of the gap where its variations are not known."""
     name = next((t.name for t in scene.terms if isinstance(t, GapTerm)), None)
     if name is not None and scene.motion != "spines":
@@ -121,7 +117,7 @@ def _check_gaps(scene: Scene) -> None:
         )
 
 
-def check_held(scene: Scene) -> None:
+def check_held(scene: Posed) -> None:
     """Refuse an edge that nothing holds, from which a membrane retracts, and a membrane folded from
     a square whose control points have no directions of their own: normals turn at its corners.
 
@@ -145,7 +141,7 @@ def check_held(scene: Scene) -> None:
         )
 
 
-def _check_weight(scene: Scene) -> None:
+def _check_weight(scene: Posed) -> None:
     """Refuse a scene whose liquid and particles are weighed by two gravities."""
     pulls = [
         t.density_of_liquid * np.array(t.acceleration)

@@ -283,7 +283,8 @@ TAKES = {
     "None": """
         Contact.ring Discretization.degree Discretization.model Kinematics.second Scene.scale
         Scene.origin
-        Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge
+        Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge Scene.otherwise
+        Scene.finer Scene.recipe
         Scene.free_particles Sliding.solid Solution.audit Solution.bracket
         Solution.progress SolverOptions.start SolverOptions.checkpoint Space.pole Space.shared
         Space.leaders Space.ruled Spines.directions Table.second Table.kinds
@@ -367,9 +368,6 @@ TAKES = {
     """,
     "not a number": """
         Kinematics.position Nearest.normal
-    """,
-    "None, function, class": """
-        Scene.otherwise Scene.finer
     """,
     "None, 1e308, 1e-300, -1, nan, inf, five, half": """
         Solution.lambda_min Solution.volume_error

@@ -25,6 +25,7 @@ from iga_membrane.analysis.record_store import RecordStore
 from iga_membrane.cli import main
 from iga_membrane.driver.result_file import read_result
 from iga_membrane.io.sweep_file import load_sweep
+from iga_membrane.problems.scene import Ramp
 from iga_membrane.records import digest
 from iga_membrane.terms import BodyDensity, BodyTerm
 
@@ -78,10 +79,13 @@ def test_a_failed_solution_comes_back_too(tmp_path):
     assert iga.load(tmp_path / "state.npz").status is iga.Status.NO_EQUILIBRIUM
 
 
-def test_a_loaded_scene_refuses_to_call_functions_that_were_not_kept(saved):
-    scene = iga.load(saved).scene
+def test_a_loaded_scene_refuses_to_call_functions_of_its_user_that_were_not_kept(tmp_path):
+    path = iga.trace(lambda angle: droplet(angle, 1.0, elements=6), [100.0, 110.0])
+    scene = path.end.scene
+    own = replace(scene, ramp=Ramp("angle", (100.0, 110.0), lambda angle: scene), origin=None)
+    replace(path.end, scene=own).save(tmp_path / "path.npz")
     with pytest.raises(iga.SceneError, match="build the scene anew"):
-        scene.ramp(0.5)
+        iga.load(tmp_path / "path.npz").scene.ramp(0.5)
 
 
 @dataclass(frozen=True)
@@ -213,6 +217,10 @@ def forged(path, header, arrays):
         {"record": "records.__class__", "fields": {}},
         {"enum": "solvers.options.SolverOptions", "value": "x"},
         {"enum": "status.Status", "value": "FINE"},
+        {
+            "record": "problems.recipe.Recipe",
+            "fields": {"family": "os.system", "arguments": {"map": [["command", "true"]]}},
+        },
         {"array": "nowhere"},
         {"map": [1]},
         {"tuple": [{"tuple": [{"nothing": 1}]}]},

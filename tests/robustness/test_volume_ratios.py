@@ -78,7 +78,7 @@ def test_a_pushed_droplet_is_not_thought_to_stay_on_its_asperity():
 
 def test_the_mesh_of_one_asperity_is_not_taken_for_its_fallback():
     coarse = on_lattice(120.0, 1.0, discretization=iga.Discretization(elements=12, degree=3))
-    given, own = coarse.otherwise(), on_lattice(120.0, 1.0).otherwise()
+    given, own = (scene.otherwise.scene() for scene in (coarse, on_lattice(120.0, 1.0)))
     assert given.surface.space.net_shape == own.surface.space.net_shape
 
 

@@ -168,6 +168,7 @@ def changes(kind):
             REFUSED,
         ),
         "words": ({"description": {}, "warnings": ()}, SAME),
+        "no recipe": ({"recipe": None}, SAME),
     }
     for way in ("ramp", "predictor", "start_from", "otherwise", "finer", "free_edge",
                 "free_particles"):  # fmt: skip
@@ -191,7 +192,8 @@ def changes(kind):
 FIELDS = {
     "surface", "terms", "supports", "scale", "grading", "directions", "motion", "ramp", "predictor",
     "start_from", "otherwise", "finer", "free_edge", "free_particles", "substrate", "particles",
-    "hold", "acceleration", "liquid_density", "kind", "description", "warnings", "origin",
+    "hold", "acceleration", "liquid_density", "kind", "description", "warnings", "recipe",
+    "origin",
 }  # fmt: skip
 
 

@@ -1,0 +1,42 @@
+"""The rim of a droplet's foot at 180 degrees on a plane, whose radius is to be found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..surface.surface import Surface
+from ..terms import Volume
+from .recipe import Recipe
+from .scene import FreeEdge, Scene
+from .smooth_foot import rim_radius, with_rim
+
+
+@dataclass(frozen=True)
+class RimOnPlane(FreeEdge):
+    """The rim where a membrane leaves a plane tangentially.
+
+    Attributes
+    ----------
+    recipe : of the droplet that the scene was built for.
+    """
+
+    recipe: Recipe
+
+    def surface_at(self, scene: Scene, place: float) -> Surface:
+        return with_rim(scene.surface, place, scene.units)
+
+    def place_of(self, surface: Surface) -> float:
+        return rim_radius(surface)
+
+    def foretold(self, scene: Scene) -> Surface:
+        asked = self.recipe.arguments
+        volume = next((t.value for t in scene.terms if isinstance(t, Volume)), asked["volume"])
+        weight = tuple(scene.acceleration), scene.liquid_density
+        own = tuple(asked["gravity"]), asked["liquid"].density
+        if (volume, weight) == (asked["volume"], own) or not np.any(weight[0]):
+            return scene.surface
+        heavy = replace(asked["liquid"], density=scene.liquid_density)
+        fresh = self.recipe.scene(volume=volume, gravity=scene.acceleration, liquid=heavy)
+        return scene.surface.moved(fresh.surface.points)
