@@ -91,6 +91,11 @@ class Block:
         """Whether they are those of the computed model itself."""
         return -1 not in self.parity.signs
 
+    @property
+    def moves(self) -> bool:
+        """Whether there are any."""
+        return bool(self.factors[self.unknowns >= 0].any())
+
 
 class Spines:
     """The spine motion of a surface: a fixed numbering of unknowns, directions on demand.

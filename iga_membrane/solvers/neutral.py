@@ -28,7 +28,8 @@ SMALL = 1e-6
 PLACES = 400
 """Places of the computed part at which solids are looked at."""
 AXIAL = 1e-3
-"""Part of a turn that moves a body of revolution along its normal: the ripple of its spline."""
+"""Part of a turn that moves a body along its normal below which it is one of revolution: what is
+left where its control points do not lie quite evenly round the axis."""
 
 
 def neutral_motions(

@@ -38,7 +38,9 @@ class SecondVariation:
     rigid : (rows, 6) integrals of the normal displacement of each row times that of the rigid
         motions, three translations and three rotations about the origin.
     normal, size : (6, 6) integrals over the computed part of products of their normal
-        displacements, and of the displacements.
+        displacements, as far as control points follow them, and of the displacements. Of a turn
+        about the axis of a body of revolution nothing is followed but rounding, although its
+        spline, not quite round, has a ripple that turns.
     moment : (4,) volume of the whole liquid and its first moments.
     """
 
@@ -64,6 +66,9 @@ class SecondVariation:
         points, d = self._surface.points, self.motion.directions
         at = vary.element_points(self._free.table, points)
         rows = len(d)
+        own = rigid_motions(points[self.motion.points])
+        length = np.maximum((d**2).sum(axis=1), np.finfo(float).tiny)
+        followed = np.einsum("rki,ri->rk", own, d) / length[:, None]
         self.rigid, self.normal, self.size = np.zeros((rows, 6)), np.zeros((6, 6)), np.zeros((6, 6))
         for table, part in self._free.parts(points, at):
             n = part.c / part.area[..., None]
@@ -73,7 +78,8 @@ class SecondVariation:
             work = along.transpose(0, 2, 1) @ (rigid * area[..., None])
             for k in range(6):
                 self.rigid[:, k] += np.bincount(table.functions.ravel(), work[..., k].ravel(), rows)
-            self.normal += np.einsum("eqi,eqj,eq->ij", rigid, rigid, area)
+            moved = along @ followed[table.functions]
+            self.normal += np.einsum("eqi,eqj,eq->ij", moved, moved, area)
             moves = rigid_motions(part.x)
             self.size += np.einsum("eqki,eqli,eq->kl", moves, moves, area, optimize=True)
 

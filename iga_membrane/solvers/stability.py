@@ -93,8 +93,10 @@ def stability_of(
         If a Hessian cannot be factorized.
     """
     state = SecondVariation(assembly, surface, multipliers)
-    blocks = assembly.spines.blocks[: None if scope == "full" else 1]
     neutral = Neutral(scene, assembly, surface, state)
+    # coarse meshes may have no motion of some parity
+    blocks = [b for b in assembly.spines.blocks if b.own or b.moves]
+    blocks = blocks[: None if scope == "full" else 1]
     verdicts = [_verdict(state, blocks[0], neutral, np.inf)]
     verdicts += [_verdict(state, block, neutral, verdicts[0].smallest) for block in blocks[1:]]
     index = sum(b.parity.alike * v.index for b, v in zip(blocks, verdicts, strict=True))

@@ -1,6 +1,7 @@
 """Verdicts of the whole body, whatever part of it is computed."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -180,3 +181,26 @@ def test_a_droplet_turns_freely_about_its_particle(azimuth, radius):
     )
     found = iga.solve(scene)
     assert any(f"rotation about z through ({x:.4g}, {y:.4g}" in text for text in found.warnings)
+
+
+@cache
+def coarse_ring(model):
+    turn = np.radians(120.0)
+
+    def cap(t):
+        polar = turn * (1.0 - t)
+        return np.sin(polar), np.cos(polar) - np.cos(turn), -turn * np.cos(polar)
+
+    start = iga.axisymmetric(iga.drop_space("bspline", 3, 8, around=8), cap)
+    return iga.solve(replace(droplet(120.0, 1.0, model=model), surface=start, ramp=None))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_coarse_ring_has_one_verdict_in_all_models(model):
+    """Its spline is not quite round, and its smallest model has no motion of one parity: a turn
+    about the axis is no motion that nothing resists, and nothing is counted of what is not there.
+    """
+    found = coarse_ring(model)
+    assert found.index == 0
+    assert found.lambda_min == pytest.approx(coarse_ring("full").lambda_min, rel=1e-6)
+    assert "rotation" not in "".join(found.warnings)
