@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import iga_membrane as iga
 from iga_membrane.assembly.lagrangian import Assembly
@@ -26,6 +27,18 @@ def example(name):
     sys.modules[name] = module  # where dataclasses look for their annotations
     spec.loader.exec_module(module)
     return module
+
+
+def some(members, quick):
+    """Members of a family as parameters: those with the numbers ``quick`` are among the default
+    tests, the others run with ``-m slow``."""
+    members = list(members)
+    assert set(quick) <= set(range(len(members)))
+    several = [one if isinstance(one, tuple) else (one,) for one in members]
+    return [
+        pytest.param(*one, marks=[] if k in quick else [pytest.mark.slow])
+        for k, one in enumerate(several)
+    ]
 
 
 def droplet(contact_angle, bond=0.0, *, quadrature=None, hold="none", **mesh):

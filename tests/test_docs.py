@@ -31,7 +31,18 @@ def blocks(page):
     return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=name_of)
+LONG = ("docs/start.md", "docs/guides/particles.md")
+"""Pages whose code takes more than some seconds."""
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(p, marks=[pytest.mark.slow] if name_of(p) in LONG else [], id=name_of(p))
+        for p in PAGES
+        if blocks(p)
+    ],
+)
 def test_code_blocks_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     if not drawing.can_draw():
@@ -91,6 +102,7 @@ def test_the_command_that_builds_the_pages_is_told():
     assert "python -m sphinx -W --keep-going -b html docs" in (ROOT / "CONTRIBUTING.md").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("builder", "folder", "ending"),
     [

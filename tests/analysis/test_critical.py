@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from helpers import particle_sheet
+from helpers import particle_sheet, some
 
 import iga_membrane as iga
 
@@ -32,7 +32,7 @@ def critical(case, name, low=1.0, high=175.0):
     )
 
 
-@pytest.mark.parametrize("case", [CASES[0], CASES[2]], ids=["weak", "above"])
+@pytest.mark.parametrize("case", some((CASES[0], CASES[2]), {0}), ids=["weak", "above"])
 def test_critical_angles(case):
     (angle,) = case["values"]["physical"]
     found = critical(case, "physical")

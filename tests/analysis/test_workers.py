@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from analysis.sweep_scenes import Deadly, drop
+from helpers import some
 
 import iga_membrane as iga
 from iga_membrane.analysis.portable import identity
@@ -41,7 +42,7 @@ print("went on")
 """
 
 
-@pytest.mark.parametrize("system", ["", ALONE], ids=["server", "spawn"])
+@pytest.mark.parametrize("system", some(("", ALONE), {1}), ids=["server", "spawn"])
 def test_a_script_without_a_guard_is_told_at_once(tmp_path, system):
     (tmp_path / "script.py").write_text(system + UNGUARDED)
     ended, seconds = run(["script.py"], tmp_path)
@@ -83,7 +84,7 @@ print(*heights)
 """
 
 
-@pytest.mark.parametrize("method", ["", ALONE], ids=["server", "spawn"])
+@pytest.mark.parametrize("method", some(("", ALONE), {0}), ids=["server", "spawn"])
 def test_functions_of_a_notebook_run_on_any_system(tmp_path, method):
     """Typed at a prompt, so no worker can import them; as on macOS and Windows."""
     ended, _ = run(["-"], tmp_path, method + NOTEBOOK)

@@ -42,6 +42,7 @@ def test_sheet_and_particle():
     assert lines[0] > 0
 
 
+@pytest.mark.slow
 def test_figure11():
     example = load("figure11")
     curves = example.main(angles=(30.0, 90.0, 170.0), bonds=(0.1, 1.0))
@@ -51,6 +52,7 @@ def test_figure11():
     assert example.largest_bond(1.0) == pytest.approx(1.17, rel=2e-2)
 
 
+@pytest.mark.slow
 def test_self_cleaning_map():
     example = load("self_cleaning_map")
     with ThreadPoolExecutor(1) as executor:
@@ -99,6 +101,7 @@ def test_contact_angles_on_asperities():
     assert steep["carried"] == pytest.approx(1.0, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_cassie_limit():
     example = load("cassie_limit")
     (row,) = example.main(angles=(130.0,), shapes=("circle",), per_radius=4)
@@ -142,6 +145,7 @@ def test_scripts_have_at_most_twenty_lines(name):
     assert sum(bool(line.strip()) for line in lines) <= 20
 
 
+@pytest.mark.slow
 def test_pillars():
     example = load("pillars")
     round_, flat = example.main(rims=(0.15, 0.1), radius=0.15, elements=48)
@@ -189,6 +193,7 @@ def film_middle(load_, height):
     return brentq(edge, -0.44 * height, 0.0, xtol=1e-12)
 
 
+@pytest.mark.slow
 def test_own_energy():
     path = load("own_energy").main(loads=(0.7, 0.8))
     for value, solution in zip(path.values, path.solutions, strict=True):
@@ -249,6 +254,7 @@ def test_critical_angle():
     assert load("critical_angle").main().value == pytest.approx(144.05640220715, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_critical_tilt():
     """Stable up to a limit point; until then the particle carries what pulls the droplet down."""
     path = load("critical_tilt").main(elements=8)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import some
 
 import iga_membrane as iga
 from iga_membrane.driver import evaluate as conclude
@@ -27,7 +28,7 @@ CASES = [(c, bulge, shear) for c in (0.35, 0.6) for bulge, shear in
          [(0.8, 0.0), (-0.8, 0.0), (0.5, 0.3), (1.2, -0.5), (-0.6, 0.7)]]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", some([(case,) for case in CASES], range(0, 10, 2)))
 def test_crossing_is_seen_and_near_miss_is_not(case):
     assert crossing(folded(1e-6, *case)) is None
     for depth in (1e-2, 0.1):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME, droplet, worst
+from helpers import UNIT_VOLUME, droplet, some, worst
 
 import iga_membrane as iga
 from iga_membrane.reference import cap_on_plane, drop_on_plane
@@ -48,10 +48,13 @@ def test_bond_numbers_from_zero_to_a_thousand(angle, bond):
 
 @pytest.mark.parametrize(
     ("bond", "space"),
-    [
-        *((bond, "bspline") for bond in (1e-6, 7e-6, 3e-5, 1e-4, 2e-3, 1e-2)),
-        *((bond, "nurbs") for bond in (1e-6, 4e-4)),
-    ],
+    some(
+        [
+            *((bond, "bspline") for bond in (1e-6, 7e-6, 3e-5, 1e-4, 2e-3, 1e-2)),
+            *((bond, "nurbs") for bond in (1e-6, 4e-4)),
+        ],
+        {0, 2, 5, 7},
+    ),
 )
 def test_a_small_ball_stands_on_the_foot_that_carries_its_weight(bond, space):
     """Mahadevan and Pomeau (1999): a^2 = 2 Bo R^2 / 3 to the leading order."""

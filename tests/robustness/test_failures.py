@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME, droplet, droplet_file, particle_sheet, path_file, pinned_cap
+from helpers import UNIT_VOLUME, droplet, droplet_file, particle_sheet, path_file, pinned_cap, some
 from robustness.contract import check_contract, finite, unheld_droplet
 
 import iga_membrane as iga
@@ -79,7 +79,7 @@ def test_every_status_of_an_iteration_has_a_remedy():
     assert {status.name for status in REMEDY} == raised
 
 
-@pytest.mark.parametrize("when", [1, 2, 3, 5])
+@pytest.mark.parametrize("when", some((1, 2, 3, 5), {0, 2}))
 @pytest.mark.parametrize("how", ["nan", "inf"])
 def test_a_kernel_that_returns_no_number_is_survived_or_named(monkeypatch, tmp_path, when, how):
     """N2: the forces of one iteration are not finite."""
@@ -315,7 +315,7 @@ sys.exit(cli.main(["solve", scene, "--out", out]))
 """
 
 
-@pytest.mark.parametrize("place", ["assembly", "factorization", "write"])
+@pytest.mark.parametrize("place", some(("assembly", "factorization", "write"), {1}))
 def test_one_interrupt_is_enough_and_the_path_goes_on(tmp_path, place):
     """S9: Ctrl-C after two steps of a path, in the midst of the third."""
     scene, out = tmp_path / "scene.toml", tmp_path / "out"

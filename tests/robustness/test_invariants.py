@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from helpers import droplet, worst
+from helpers import droplet, some, worst
 from robustness.extreme_scenes import KINDS, extreme_scenes, score
 
 import iga_membrane as iga
@@ -25,7 +25,7 @@ from iga_membrane.terms import variations
 UNIT = iga.Plane(contact_angle=90)
 
 
-@pytest.mark.parametrize("bond", [0.0, 1.0, 20.0])
+@pytest.mark.parametrize("bond", some((0.0, 1.0, 20.0), {1}))
 def test_the_wet_area_falls_with_the_contact_angle(bond):
     """Q17"""
     angles = np.linspace(20, 170, 12)
@@ -327,15 +327,16 @@ QUICK = ("droplet", "cap", "contact area", "tilted", "held", "sphere", "film",
 """Kinds of which no scene takes more than some seconds."""
 
 
-def test_extreme_scenes_are_solved_or_named():
+@pytest.mark.parametrize(("kinds", "least"), some([(QUICK[::2], 7), (QUICK[1::2], 7)], {0}))
+def test_extreme_scenes_are_solved_or_named(kinds, least):
     """Z, a small sample; ``benchmarks/reliability.py`` runs three hundred."""
     ends = [
         (end, extreme.exists(), extreme, error)
-        for extreme, _, end, error in outcomes(20, 30, QUICK)
+        for extreme, _, end, error in outcomes(20, 30, kinds)
     ]
     assert not [row for row in ends if row[0] in ("wrong", "crashed")]
     known = [end == "solved" for end, exists, *_ in ends if exists]
-    assert len(known) >= 15
+    assert len(known) >= least
     assert np.mean(known) >= 0.95
 
 

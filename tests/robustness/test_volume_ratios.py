@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import some
 
 import iga_membrane as iga
 from iga_membrane.reference import drop_on_plane
@@ -44,7 +45,7 @@ def test_one_asperity_of_many_is_the_same_sphere():
     assert line.solid == found.contact["asperities"][0]["index"]
 
 
-@pytest.mark.parametrize("ratio", [1e-6, 1e-3, 1.0])
+@pytest.mark.parametrize("ratio", some((1e-6, 1e-3, 1.0), {1}))
 def test_a_mesh_too_coarse_for_large_asperities_is_refined(ratio):
     found = iga.solve(on_lattice(180.0, ratio))
     assert found.contact["wet_solids"] == 1

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from helpers import some
 
 import iga_membrane as iga
 from iga_membrane.io.scene_file import read_scene
@@ -124,7 +125,7 @@ def test_a_scene_is_data_and_comes_back_with_its_ways(kind):
 
 
 @pytest.mark.parametrize(
-    "kind", ["plane", "sphere", "sheet", "film", "cell", "edge at 180 degrees"]
+    "kind", some(["plane", "edge at 180 degrees", "sphere", "sheet", "film", "cell"], {0, 1, 3})
 )
 def test_a_loaded_scene_is_solved_again(kind, tmp_path):
     solution = iga.solve(KINDS[kind]())

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import some
 from taylor import lagrangian_slopes
 
 import iga_membrane as iga
@@ -59,7 +60,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", some(SCENES, {1, 2, 4, 6}))
 def test_energy_and_volume_have_exact_derivatives(name, monkeypatch):
     monkeypatch.setattr("iga_membrane.contact.unfitted.EXTRA", 22)  # the integrals, not their rule
     scene, sunk = SCENES[name]()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME
+from helpers import UNIT_VOLUME, some
 
 import iga_membrane as iga
 from iga_membrane.cli import main
@@ -33,7 +33,7 @@ def cell(shape, elements, center=(0.0, 0.0, -RADIUS), model=None, pressure=PRESS
     )
 
 
-@pytest.mark.parametrize("bond", [0.01, 0.3, 1.0, 10.0, 100.0])
+@pytest.mark.parametrize("bond", some((0.01, 0.3, 1.0, 10.0, 100.0), {0, 2, 4}))
 def test_drops_on_a_plane_rest_on_a_flat_spot(bond, tmp_path):
     code, result = solved_by_command(
         f'scene = "sessile_droplet"\n[liquid]\nvolume = {UNIT_VOLUME!r}\n'

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers import MEASURES, UNIT_VOLUME, droplet, slopes, solved, worst
+from helpers import MEASURES, UNIT_VOLUME, droplet, slopes, solved, some, worst
 
 import iga_membrane as iga
 from iga_membrane.cli import main
@@ -15,7 +15,11 @@ CASES = json.loads((Path(__file__).parent / "sessile_drops.json").read_text())
 BELOW_180 = [case for case in CASES if case["contact_angle"] < 180]
 
 
-@pytest.mark.parametrize("case", BELOW_180, ids=lambda c: f"Bo{c['bond']}-{c['contact_angle']}")
+@pytest.mark.parametrize(
+    "case",
+    some(BELOW_180, range(0, len(BELOW_180), 3)),
+    ids=lambda c: f"Bo{c['bond']}-{c['contact_angle']}",
+)
 def test_published_drops_through_the_command_line(case, tmp_path):
     scene = tmp_path / "scene.toml"
     scene.write_text(
@@ -35,7 +39,7 @@ def test_published_drops_through_the_command_line(case, tmp_path):
 
 FAMILY = [(angle, bond) for bond in (0, 0.05, 0.7, 5, 30, 100)
           for angle in (3, 10, 45, 90, 135, 160, 175, 177, 179)]  # fmt: skip
-QUICK = {0: (10, 135, 179), 0.05: (3, 177), 0.7: (45, 175), 5: (90, 160), 30: (3, 90), 100: (179,)}
+QUICK = {0: (10, 179), 0.05: (177,), 0.7: (45,), 5: (160,), 30: (3, 90), 100: (179,)}
 """Angles of those among the default tests, by their Bond numbers."""
 
 
@@ -60,7 +64,7 @@ RATES += [("lagrange", 2), ("lagrange", 3), ("lagrange", 4)]
 ELEMENTS = {2: (8, 16, 32, 64), 3: (8, 16, 32), 4: (4, 8, 16)}
 
 
-@pytest.mark.parametrize(("space", "degree"), RATES)
+@pytest.mark.parametrize(("space", "degree"), some(RATES, {0, 2, 4, 6}))
 def test_pressure_and_energy_superconverge(space, degree):
     exact = drop_on_plane(1.0, 120.0)
     errors = {"p_base": [], "energy": []}

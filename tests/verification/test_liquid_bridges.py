@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from helpers import some
 
 import iga_membrane as iga
 from iga_membrane.reference import bridge_between, limit_of_stability
@@ -50,7 +51,7 @@ def agrees(found, witness):
 
 
 @pytest.mark.parametrize(
-    "number", [*range(6), *(pytest.param(k, marks=pytest.mark.slow) for k in range(6, 40))]
+    "number", some(range(40), range(4))
 )
 def test_forces_and_pressures_between_any_two_solids(number):
     *asked, witness = member(number)
@@ -59,13 +60,16 @@ def test_forces_and_pressures_between_any_two_solids(number):
 
 @pytest.mark.parametrize(
     "asked",
-    [
-        ((1.0, 1.0), (0.5, 0.5), 0.001, 0.001),
-        ((PLANE, 1.0), (0.5, 0.5), 0.05, 0.01),
-        ((1.0, 4.0), (0.655, 1.294), 0.1947, 0.2009),
-        ((50.0, 50.0), (110.0, 60.0), 0.6, 1.0),
-        ((PLANE, 1.0), (40.0, 40.0), 0.3, 1.0),
-    ],
+    some(
+        [
+            (((1.0, 1.0), (0.5, 0.5), 0.001, 0.001),),
+            (((PLANE, 1.0), (0.5, 0.5), 0.05, 0.01),),
+            (((1.0, 4.0), (0.655, 1.294), 0.1947, 0.2009),),
+            (((50.0, 50.0), (110.0, 60.0), 0.6, 1.0),),
+            (((PLANE, 1.0), (40.0, 40.0), 0.3, 1.0),),
+        ],
+        {0, 1, 3},
+    ),
 )
 def test_nearly_tangent_lines_thin_gaps_and_flat_spheres(asked):
     agrees(iga.solve(scene(*asked)), bridge_between(*asked))

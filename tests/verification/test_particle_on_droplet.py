@@ -34,6 +34,7 @@ def test_forces_converge_and_balance(case):
     check_convergence_and_balance(meshes, sideways=2e-4)
 
 
+@pytest.mark.slow
 def test_half_model_agrees_with_full():
     half, full = solved(), iga.solve(scene(particle(), hold="xy", model="full"))
     assert (half.scene.sector.model, full.scene.sector.model) == ("half", "full")

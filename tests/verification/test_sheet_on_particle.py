@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from helpers import slopes
+from helpers import slopes, some
 
 import iga_membrane as iga
 from iga_membrane.cli import main
@@ -28,8 +28,9 @@ def sheet(angle, d=0.0, *, bond=0.0, weight=False, density=1.0, **options):
 
 
 def quick_or_slow(case):
-    """A parameter; of the limits that a path has to find one is among the default tests."""
-    slow = not case["exists"] and case["family"] != "F2"
+    """A parameter; a third of them are among the default tests, of the limits that a path has to
+    find one."""
+    slow = (not case["exists"] and case["family"] != "F2") or CASES.index(case) % 3
     return pytest.param(case, marks=[pytest.mark.slow] if slow else [], id=case_id(case))
 
 
@@ -58,7 +59,7 @@ def test_sheets_through_the_command_line(case, tmp_path):
         assert abs(result["measures"][name] - value) <= allowed * max(abs(value), 1.0), name
 
 
-@pytest.mark.parametrize("angle", [5, 20, 45, 75, 105, 135, 165, 175])
+@pytest.mark.parametrize("angle", some((5, 20, 45, 75, 105, 135, 165, 175), {0, 2, 5, 7}))
 def test_direct_newton_at_every_angle(angle):
     solution = iga.solve(sheet(angle))
     assert solution.newton_iterations <= 16
@@ -82,7 +83,7 @@ def test_variational_force_superconverges(degree):
 
 
 @pytest.mark.parametrize(
-    "case", CRITICAL, ids=lambda c: f"Bp{c['params']['Bp']}-d{c['params']['d']}"
+    "case", some(CRITICAL, {0, 2}), ids=lambda c: f"Bp{c['params']['Bp']}-d{c['params']['d']}"
 )
 def test_forces_vanish_at_the_critical_angles(case):
     p = case["params"]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from helpers import some
 
 import iga_membrane as iga
 
@@ -17,7 +18,7 @@ SHEETS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SHEETS)
+@pytest.mark.parametrize("name", some(SHEETS, {1, 2, 5}))
 def test_a_sheet_on_a_particle(name):
     angle, boundary, center, more = SHEETS[name]
     particle = iga.Sphere(angle, 1.0, center, 1.0)
@@ -33,7 +34,9 @@ def test_a_sheet_on_a_particle(name):
         assert np.abs(first - second).max() < 3e-6, part
 
 
-@pytest.mark.parametrize(("angle", "bond", "radius"), [(120.0, 1.0, 1.0), (90.0, 0.5, 1.0)])
+@pytest.mark.parametrize(
+    ("angle", "bond", "radius"), some([(120.0, 1.0, 1.0), (90.0, 0.5, 1.0)], {0})
+)
 def test_a_drop_on_a_sphere(angle, bond, radius):
     sphere = iga.Sphere(angle, radius, (0.0, 0.0, -radius))
     one, other = (

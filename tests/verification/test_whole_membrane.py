@@ -81,6 +81,7 @@ def test_relaxed_shapes_do_not_know_the_stabilization():
         assert np.ptp(values) <= bound * abs(values[0]), name
 
 
+@pytest.mark.slow
 def test_a_strong_stabilization_fades():
     energies = []
     for mu in (1.0, 100.0):
@@ -110,12 +111,14 @@ def test_a_stabilization_that_has_not_relaxed_is_named(monkeypatch):
     assert "lower solver.stabilization" in found.message
 
 
+@pytest.mark.slow
 def test_a_penalty_too_soft_is_penetration():
     membrane = iga.WholeMembrane(penalty=50.0, load_steps=4)
     found = iga.solve(sheet(130.0, membrane=membrane, elements=9), on_fail="return")
     assert found.status is iga.Status.PENETRATION
 
 
+@pytest.mark.slow
 def test_through_the_command_line(tmp_path):
     scene = tmp_path / "scene.toml"
     scene.write_text(
