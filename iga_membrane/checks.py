@@ -220,6 +220,14 @@ def contact_angle(field: str, value: Any) -> float:
     return angle
 
 
+def wet_angle(field: str, value: Any) -> float:
+    """The same, or 0: perfectly wet."""
+    angle = number(
+        field, value, least=0.0, most=180.0, unit="degrees, through the liquid", smallest=0.0
+    )
+    return contact_angle(field, angle) if angle else angle
+
+
 def record(field: str, value: Any, *kinds: type) -> Any:
     """An object of one of some classes."""
     if not isinstance(value, kinds):

@@ -12,7 +12,6 @@ from .checks import (
     NOT_NEGATIVE,
     POSITIVE,
     Rule,
-    contact_angle,
     direction,
     either,
     flag,
@@ -25,6 +24,7 @@ from .checks import (
     state_file,
     text,
     vector,
+    wet_angle,
     words,
 )
 
@@ -35,7 +35,7 @@ FIELDS: dict[str, Rule] = {
     "gravity.acceleration": NOT_NEGATIVE,
     "gravity.direction": direction,
     "substrate.kind": words("plane", "sphere", "sphere_lattice", "spheres", "none"),
-    "substrate.contact_angle": partial(one_or_more, each=contact_angle),
+    "substrate.contact_angle": partial(one_or_more, each=wet_angle),
     "substrate.radius": POSITIVE,
     "substrate.spacing": POSITIVE,
     "substrate.arrangement": words("square", "hexagonal"),
@@ -46,7 +46,7 @@ FIELDS: dict[str, Rule] = {
     "particle.radius": POSITIVE,
     "particle.center": vector,
     "particle.density": NOT_NEGATIVE,
-    "particle.contact_angle": contact_angle,
+    "particle.contact_angle": wet_angle,
     "particle.motion": words("fixed", "vertical", "normal", "resting"),
     "droplet.hold": words("none", "x", "xy", "xyz"),
     "sheet.boundary": words("square", "circle"),

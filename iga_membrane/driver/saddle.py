@@ -45,7 +45,7 @@ def check_followed(scene: Scene) -> None:
     for stands, what in (
         (scene.free_particles is not None, "with particles that move"),
         (scene.motion == "cartesian", 'with solver.motion = "cartesian"'),
-        (scene.free_edge is not None, "at 180 degrees on a smooth solid"),
+        (scene.free_edge is not None, "at 0 or 180 degrees on a smooth solid"),
     ):
         if stands:
             raise SceneError(f"solver.follow_instability: not available yet {what}; leave it out")

@@ -147,8 +147,8 @@ def walk(
         raise SceneError("solver.follow_instability: not available yet along a path; leave it out")
     if any(ramp(load).free_edge is not None for load in ramp.stops):
         raise SceneError(
-            "path: not available at 180 degrees on a plane, where the edge of the foot is searched "
-            "for at every value; solve the scenes one by one (sweep), or stay below 180"
+            "path: not available at 0 or 180 degrees on a smooth solid, where the edge is searched "
+            "for at every value; solve the scenes one by one (sweep), or stay between"
         )
     started = thread_time()
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..dofs.boundary_conditions import Sliding
+from ..dofs.boundary_conditions import Fixed, Sliding, Support
 from ..errors import SceneError
 from ..initial.toroid import End, least_energy_toroid
 from ..solids import Plane, Solid, Sphere
@@ -23,6 +23,7 @@ from .recipe import Recipe
 from .scene import Scene
 from .smooth_foot import rest_of
 from .spec import BALL, Foot, Question, sector_of
+from .wet_rims import WetRims
 
 CLOSE = 0.5
 """Gap between two solids over a droplet's length across which it bridges them easily."""
@@ -144,10 +145,26 @@ def bridge(parts: Question, ends: Ends) -> Foot:
     start = axisymmetric(ring_space(mesh.space, mesh.degree, mesh.elements), arc)
     lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2])]
     lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2]))
-    supports = [Sliding("xi2=0", None if isinstance(ends[0], Plane) else ends[0])]
-    supports.append(Sliding("xi2=1", ends[1]))
-    surface = start.moved(scale.to_world(start.points))
-    return Foot(surface, sector_of(mesh, parts.bond), mesh, lines, supports)
+    surface, edges = start.moved(scale.to_world(start.points)), ("xi2=0", "xi2=1")
+    wet = tuple(
+        (edge, Plane(0.0) if isinstance(solid, Plane) else scale.local_sphere(solid), side)
+        for edge, solid, side in zip(edges, ends, (1.0, -1.0), strict=True)
+        if solid.contact_angle == 0.0
+    )
+    if wet and parts.bond[:2].any():
+        raise SceneError(
+            "contact_angle = 0: not available yet where gravity leans across the axis of a bridge; "
+            "turn it along the axis, or take an angle > 0"
+        )
+    supports: list[Support] = [
+        Fixed(edge)
+        if solid.contact_angle == 0.0
+        else Sliding(edge, None if isinstance(solid, Plane) else solid)
+        for edge, solid in zip(edges, ends, strict=True)
+    ]
+    sector = sector_of(mesh, parts.bond)
+    rims = WetRims(wet) if wet else None
+    return Foot(surface, sector, mesh, lines, supports, free_edge=rims)
 
 
 def _local(scale: Scale, solid: Plane | Sphere) -> Plane | Sphere:

@@ -28,6 +28,7 @@ from ..surface.surface import Surface
 from ..terms import Contact, Pressure, Scale, SurfaceTension, TrimmedContactLine
 from .recipe import Along, Recipe, family
 from .scene import Ramp, Scene
+from .well_posed import refuse_perfectly_wet
 from .whole_foot import adhesion
 
 NEARLY = 0.99
@@ -83,6 +84,7 @@ def asperity_cell(
     SceneError
         A value out of its range; a sphere that does not fit into the cell.
     """
+    refuse_perfectly_wet("substrate", sphere)
     liquid, asked = with_defaults(liquid, discretization)
     r, (x, y, z) = sphere.radius, sphere.center
     Scale(r, liquid.surface_tension).check_lengths("cell.size", size)

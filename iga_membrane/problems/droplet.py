@@ -47,6 +47,7 @@ from .particle_foot import with_particles
 from .recipe import Along, Recipe, family
 from .scene import Ramp, Scene
 from .spec import Question
+from .well_posed import refuse_perfectly_wet
 
 ROUNDING = 1e-12
 """Part of gravity along an axis of the scene below which it has none there."""
@@ -131,6 +132,10 @@ def sessile_droplet(
     acceleration = np.array(gravity)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     ends = ends_of(asked_substrate, grains, contact_line, length)
+    if ends is None:
+        refuse_perfectly_wet("substrate", asked_substrate)
+        for i, each in enumerate(grains):
+            refuse_perfectly_wet(f"particle[{i}]", each)
     if ends is not None:
         origin, axes = frame_between(ends)
     else:
@@ -241,6 +246,7 @@ def sessile_droplet(
             axes[:, 2] * ([[1.0], [-1.0]] if asked_substrate is None else [[-1.0]])[: len(grains)]
         )
         gamma = liquid.surface_tension
+        scene = replace(scene, free_edge=built.free_edge)
         return moving(scene, grains, toward, gamma, recipe)
     if grains:
         line, gamma = built.terms[-1], liquid.surface_tension

@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import Array
+from ..solids import Plane
 from ..surface.surface import Surface
 from ..terms import Volume
 from .recipe import Recipe
-from .scene import FreeEdge, Scene
+from .scene import FreeEdge, Scene, TangentEdge
 from .smooth_foot import rim_radius, with_rim
 
 
@@ -24,11 +26,14 @@ class RimOnPlane(FreeEdge):
 
     recipe: Recipe
 
-    def surface_at(self, scene: Scene, place: float) -> Surface:
-        return with_rim(scene.surface, place, scene.units)
+    def edges(self, scene: Scene) -> list[TangentEdge]:
+        return [TangentEdge("xi2=0", Plane(180.0), carries=True)]
 
-    def place_of(self, surface: Surface) -> float:
-        return rim_radius(surface)
+    def surface_at(self, scene: Scene, place: Array) -> Surface:
+        return with_rim(scene.surface, float(place[0]), scene.units)
+
+    def place_of(self, surface: Surface) -> Array:
+        return np.array([rim_radius(surface)])
 
     def foretold(self, scene: Scene) -> Surface:
         asked = self.recipe.arguments

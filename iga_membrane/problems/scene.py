@@ -87,25 +87,44 @@ class Ramp:
         return scene
 
 
-class FreeEdge:
-    """An edge at 180 degrees: the membrane leaves a smooth solid tangentially, at a place to be
-    found. The place is a coordinate of the edge on its solid, a radius or an angle.
+@dataclass(frozen=True)
+class TangentEdge:
+    """An edge that leaves a solid tangentially.
+
+    Attributes
+    ----------
+    edge : of the patch; solid : in the scene's scale.
+    carries : whether it is a plane that alone carries the whole liquid.
     """
 
-    def surface_at(self, scene: Scene, place: float) -> Surface:
-        """A scene's start with its edge at a place."""
+    edge: str
+    solid: Plane | Sphere
+    carries: bool = False
+
+
+class FreeEdge:
+    """Edges at 0 or 180 degrees: the membrane leaves smooth solids tangentially, at places to be
+    found. A place is a coordinate of the edge on its solid, a radius or an angle.
+    """
+
+    def edges(self, scene: Scene) -> list[TangentEdge]:
+        """The edges."""
         raise NotImplementedError
 
-    def place_of(self, surface: Surface) -> float:
-        """The coordinate of a surface's edge, in the scene's scale."""
+    def surface_at(self, scene: Scene, place: Array) -> Surface:
+        """A scene's start with its edges at places (k,)."""
+        raise NotImplementedError
+
+    def place_of(self, surface: Surface) -> Array:
+        """(k,) coordinates of a surface's edges, in the scene's scale."""
         raise NotImplementedError
 
     def foretold(self, scene: Scene) -> Surface:
-        """A scene's start, with the edge where its own weight and volume foretell it."""
+        """A scene's start, with the edges where its own weight and volume foretell them."""
         return scene.surface
 
-    def fixed_at(self, scene: Scene, place: float) -> Scene:
-        """A scene with its edge at another place."""
+    def fixed_at(self, scene: Scene, place: Array) -> Scene:
+        """A scene with its edges at other places."""
         return replace(scene, surface=self.surface_at(scene, place))
 
 
@@ -173,7 +192,7 @@ class Scene:
         the spaces differ.
     otherwise : how to ask the same in another discretization, tried where this one fails.
     finer : how to ask the same on a finer mesh, tried where the audit finds this one too coarse.
-    free_edge : the way to find a fixed edge's place at 180 degrees.
+    free_edge : the way to find the places of fixed edges at 0 or 180 degrees.
     free_particles : those that move.
     substrate : the solid that the membrane touches, for its kind and pictures.
     particles : spheres on which it pulls too.

@@ -45,7 +45,8 @@ from .description import described_particle
 from .moving import moving
 from .osman_sauer import WholeMembrane, sheet_with_wetted_part
 from .recipe import Along, Recipe, family
-from .scene import FreeEdge, Ramp, Scene
+from .scene import FreeEdge, Ramp, Scene, TangentEdge
+from .well_posed import refuse_perfectly_wet
 
 CONTACT_LINES = ("auto", "conforming", "trimmed")
 THROUGH = {"degree": 3, "elements": 40}
@@ -98,6 +99,7 @@ def liquid_sheet(
         A value out of its range, both pressure and volume, a particle whose middle is not inside
         the rim, a model with a mirror plane that the particle's place does not have.
     """
+    refuse_perfectly_wet("particle[0]", particle)
     liquid, asked = with_defaults(liquid, discretization)
     through = contact_line == "trimmed"
     mesh = asked.mesh(**(THROUGH if through else {"elements": 8 if boundary == "square" else 20}))
@@ -227,11 +229,15 @@ class EdgeOnSphere(FreeEdge):
 
     particle: Sphere
 
-    def surface_at(self, scene: Scene, place: float) -> Surface:
-        return _with_edge(scene.surface, self.particle, place)
+    def edges(self, scene: Scene) -> list[TangentEdge]:
+        return [TangentEdge("xi2=0", scene.units.local_sphere(self.particle))]
 
-    def place_of(self, surface: Surface) -> float:
-        return _edge_polar(surface, Scale(self.particle.radius).local_sphere(self.particle))
+    def surface_at(self, scene: Scene, place: Array) -> Surface:
+        return _with_edge(scene.surface, self.particle, float(place[0]))
+
+    def place_of(self, surface: Surface) -> Array:
+        ball = Scale(self.particle.radius).local_sphere(self.particle)
+        return np.array([_edge_polar(surface, ball)])
 
 
 def _edge_polar(surface: Surface, ball: Sphere) -> float:

@@ -15,6 +15,7 @@ from ..solids import Solid, Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
 from ..terms import Contact, Scale, Term
+from .scene import FreeEdge
 
 BALL = 4.0 * np.pi / 3.0
 """Volume of a droplet in its own scale."""
@@ -47,6 +48,8 @@ class Foot:
 
     Attributes
     ----------
+    tangent : whether the membrane leaves a plane at 180 degrees; free_edge : edges on perfectly wet
+        solids.
     predictor : other terms that give a better start.
     start_from : a start from the equilibrium of the same droplet without particles.
     alone : what that droplet stands on, on the same patch.
@@ -60,6 +63,7 @@ class Foot:
     grading: Grading | None = field(default_factory=Grading)
     directions: Array | None = None
     tangent: bool = False
+    free_edge: FreeEdge | None = None
     predictor: Sequence[Term] = ()
     start_from: Callable[[Surface], Surface] | None = None
     alone: Foot | None = None

@@ -39,6 +39,9 @@ def check_parts(scene: Posed) -> None:
         raise SceneError("terms: pressure and volume are both prescribed; give one of them")
     sliding = [s.edge for s in scene.supports if isinstance(s, Sliding)]
     for term in scene.terms:
+        if not isinstance(term, WettingLine) or term.edge in sliding:
+            for solid in term.solids:
+                refuse_perfectly_wet(f'terms: "{term.name}"', solid)
         if isinstance(term, WettingLine) and term.edge in sliding and term.strength >= term.gamma:
             raise SceneError(
                 "contact_angle = 180: a contact line that slides freely has no place at 180 "
@@ -65,6 +68,20 @@ def check_parts(scene: Posed) -> None:
     if "surface_tension" not in names:
         raise SceneError("terms: a membrane needs a SurfaceTension")
     _check_weight(scene)
+
+
+def refuse_perfectly_wet(field: str, solid: object) -> None:
+    """Refuse a contact angle of 0.
+
+    Raises
+    ------
+    SceneError
+    """
+    if np.any(np.asarray(getattr(solid, "contact_angle", 180.0)) == 0.0):
+        raise SceneError(
+            f"{field}.contact_angle = 0: contact_angle must be > 0 and <= 180 here; on a perfectly "
+            "wet solid the liquid spreads to a film, unless it bridges two solids"
+        )
 
 
 def check_mirrors(scene: Posed) -> None:

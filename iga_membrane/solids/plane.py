@@ -9,18 +9,19 @@ from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import contact_angle, direction
+from ..checks import direction, wet_angle
 from .nearest import Nearest
 
 
 @dataclass(frozen=True)
-@checked("substrate", contact_angle=contact_angle, normal=direction)
+@checked("substrate", contact_angle=wet_angle, normal=direction)
 class Plane:
     """Half space below a plane.
 
     Attributes
     ----------
-    contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180.
+    contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180; 0, perfectly
+        wet, only where a liquid bridges two solids.
     point : a point of the plane.
     normal : out of the solid, any length > 0.
     """

@@ -9,21 +9,22 @@ from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import contact_angle
+from ..checks import wet_angle
 from ..errors import GeometryError
 from .nearest import Nearest, nearest_of_balls
 
 
 @dataclass(frozen=True)
 @checked(
-    "substrate", contact_angle=contact_angle, density="particle.density", motion="particle.motion"
+    "substrate", contact_angle=wet_angle, density="particle.density", motion="particle.motion"
 )
 class Sphere:
     """Solid ball.
 
     Attributes
     ----------
-    contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180.
+    contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180; 0, perfectly
+        wet, only where a liquid bridges two solids.
     radius : > 0.
     center : its centre.
     density : of the solid, >= 0; the weight of a particle.

@@ -123,7 +123,7 @@ def _simplest(motions: Array) -> Array:
 
 
 def _rims(scene: Scene) -> list[str]:
-    """Edges that keep their place: fixed ones, but a contact line at 180 degrees, at which the
+    """Edges that keep their place: fixed ones, but a contact line at 0 or 180 degrees, at which the
     membrane lies; and free ones, which end on a wall."""
     closed: list[str] = []
     for support in scene.supports:
@@ -131,7 +131,7 @@ def _rims(scene: Scene) -> list[str]:
             closed.append(support.edge)
         elif isinstance(support, Joint):
             closed += support.edges
-    lines = [t for t in scene.terms if isinstance(t, WettingLine) and t.strength >= t.gamma]
+    lines = [t for t in scene.terms if isinstance(t, WettingLine) and abs(t.strength) >= t.gamma]
     closed += [line.edge for line in lines]
     return [edge for edge in scene.surface.space.open_edges if edge not in closed]
 

@@ -11,14 +11,14 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import choice, contact_angle
+from ..checks import choice, wet_angle
 from ..solids import Plane, Solid
 from ..splines import EdgeTable, line
 from .term import LINE_EDGES, BodyDensity, Scale, WettingLine
 
 
 @dataclass(frozen=True)
-@checked(gamma="liquid.surface_tension", contact_angle=contact_angle, edge=line)
+@checked(gamma="liquid.surface_tension", contact_angle=wet_angle, edge=line)
 class PlaneContactLine(WettingLine):
     """Energy ``-gamma cos(theta) A_wet`` of the wetted part of the plane z = 0.
 

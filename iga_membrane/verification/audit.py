@@ -331,9 +331,10 @@ def stands_free(scene: Scene) -> bool:
 
 
 def is_hung(scene: Scene) -> bool:
-    """Whether edges are held that no solid carries: an edge that leaves its solid at 180 degrees
-    is fixed where it does so by itself."""
-    tangent = {t.edge for t in scene.terms if isinstance(t, WettingLine) and t.strength >= t.gamma}
+    """Whether edges are held that no solid carries: an edge that leaves its solid at 0 or 180
+    degrees is fixed where it does so by itself."""
+    lines = [t for t in scene.terms if isinstance(t, WettingLine)]
+    tangent = {t.edge for t in lines if abs(t.strength) >= t.gamma}
     return any(
         isinstance(s, Symmetry) or (isinstance(s, Fixed) and s.edge not in tangent)
         for s in scene.supports

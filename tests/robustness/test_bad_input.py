@@ -11,7 +11,7 @@ import pytest
 from helpers import droplet
 
 import iga_membrane as iga
-from iga_membrane.checks import contact_angle
+from iga_membrane.checks import wet_angle
 from iga_membrane.fields import FIELDS as RULES
 from iga_membrane.io.scene_keys import KEYS
 
@@ -197,7 +197,7 @@ FREE = {("sheet", "pressure"), ("sheet", "volume"), ("cell", "pressure"), ("ring
 
 def below(rule):
     rule = getattr(rule, "keywords", {}).get("each", rule)
-    limits = {"above": 0.0, "most": 180.0} if rule is contact_angle else rule.keywords
+    limits = {"least": 0.0, "most": 180.0} if rule is wet_angle else rule.keywords
     least = limits.get("above", limits.get("least", 0.0))
     values = [least - 1.0] + ([least, least - 1e-9] if "above" in limits else [])
     return values + ([1.01 * limits["most"], 200.0] if "most" in limits else [])

@@ -62,6 +62,10 @@ KINDS = {
         None, gravity=0.0, volume=0.5,
         particles=[iga.Sphere(60.0, 1.0, (0.0, 0.0, z)) for z in (-1.3, 1.3)],
     ),
+    "perfectly wet bridge": lambda: drop(
+        None, gravity=0.0, volume=0.05,
+        particles=[iga.Sphere(0.0, 1.0, (0.0, 0.0, z)) for z in (-1.05, 1.05)],
+    ),
     "sheet": lambda: iga.liquid_sheet(dataclasses.replace(BALL, contact_angle=70.0), size=5.0),
     "sheet under pressure": lambda: iga.liquid_sheet(None, size=1.0, pressure=0.5),
     "sheet with a volume": lambda: iga.liquid_sheet(None, size=1.0, boundary="circle", volume=0.1),

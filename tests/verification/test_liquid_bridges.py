@@ -1,6 +1,7 @@
 """Bridges between wetting solids against an independent axisymmetric solution."""
 
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -26,14 +27,14 @@ def scene(radii, angles, gap, volume, **more):
     return iga.sessile_droplet(None, volume=volume, particles=[lower, upper], **more)
 
 
-def member(number):
-    """One of the kind, with the witness's solution: radii, contact angles of 0.5 to 90 degrees, a
-    gap and a volume."""
+def member(number, wet=(False, False)):
+    """One of the kind, with the witness's solution: radii, contact angles of 0.5 to 90 degrees, or
+    0 where it is ``wet``, a gap and a volume."""
     rng = np.random.default_rng((SEED, number))
     while True:
         radii = float(rng.choice([PLANE, 1.0, 1.0, 3.0])), float(rng.choice([0.3, 1.0, 2.0]))
         spread = rng.uniform(0.5, 90.0, 2), np.exp(rng.uniform(np.log(0.5), np.log(30.0), 2))
-        angles = tuple(float(a) for a in spread[number % 2])
+        angles = tuple(float(a) * (not w) for a, w in zip(spread[number % 2], wet, strict=True))
         gap, volume = (float(10.0 ** rng.uniform(-3.0, top)) for top in (0.0, 0.3))
         try:
             return radii, angles, gap, volume, bridge_between(radii, angles, gap, volume)
@@ -50,12 +51,54 @@ def agrees(found, witness):
     assert found.measures["pressure"] == pytest.approx(witness.pressure, abs=allowed)
 
 
-@pytest.mark.parametrize(
-    "number", some(range(40), range(4))
-)
+@pytest.mark.parametrize("number", some(range(40), range(4)))
 def test_forces_and_pressures_between_any_two_solids(number):
     *asked, witness = member(number)
     agrees(iga.solve(scene(*asked)), witness)
+
+
+WET = [(True, True), (True, False), (False, True)]
+
+
+@pytest.mark.parametrize(("number", "wet"), some(product(range(12), WET), {0, 4, 8}))
+def test_perfectly_wet_solids(number, wet):
+    """At 0 degrees the membrane leaves its solid tangentially, at a place that is found."""
+    *asked, witness = member(number, wet)
+    found = iga.solve(scene(*asked))
+    agrees(found, witness)
+    assert found.measures["energy"] == pytest.approx(witness.E_surf, rel=1e-6)
+
+
+def test_the_balance_of_a_perfectly_wet_bridge_is_that_of_its_neck():
+    """Without weight every level carries ``gamma l - p A``; published limit of the force."""
+    found = iga.solve(scene((1.0, 1.0), (0.0, 0.0), 0.05, 0.01))
+    assert 2.9729 < abs(found.forces[1].effective[2]) < 2.98
+    assert found.audit.defects["force"] < 1e-9
+    assert abs(found.audit.defects["angle"]) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: iga.sessile_droplet(iga.Plane(0.0), volume=1.0),
+        lambda: iga.sessile_droplet(iga.Sphere(0.0, 1.0), volume=1.0),
+        lambda: iga.sessile_droplet(
+            iga.Plane(90.0), volume=4.0, particles=[iga.Sphere(0.0, 0.2, (0.5, 0.0, 1.0))]
+        ),
+        lambda: iga.liquid_sheet(iga.Sphere(0.0, 1.0), size=5.0),
+        lambda: iga.asperity_cell(iga.Sphere(0.0, 1.0), size=3.0, pressure=0.1),
+        lambda: iga.SphereLattice(0.0, 1.0, 3.0),
+    ],
+    ids=["plane", "sphere", "particle", "sheet", "cell", "lattice"],
+)
+def test_perfectly_wet_solids_that_nothing_bridges_are_refused(make):
+    with pytest.raises(iga.SceneError, match=r"contact_angle.* = 0.*must be > 0"):
+        make()
+
+
+def test_a_perfectly_wet_bridge_in_leaning_gravity_is_refused():
+    with pytest.raises(iga.SceneError, match="leans across the axis"):
+        scene((1.0, 1.0), (0.0, 0.0), 0.1, 0.05, gravity=(0.1, 0.0, 0.0))
 
 
 @pytest.mark.parametrize(
