@@ -43,6 +43,8 @@ def membrane(
     t = np.linspace(across.breaks[0], across.breaks[-1], resolution)
     if surface.space.pole is not None:
         t[-1] -= 1e-4
+    elif ring.joints:  # nor has a rim at its corners
+        t[-1] -= 1e-6 * (t[-1] - t[0])
     if surface.space.shared is not None:  # nor has a closed square at the middles of its sides
         s, t = (1.0 - 1e-6) * s, (1.0 - 1e-6) * t
     if near is not None:

@@ -112,6 +112,7 @@ def test_round_cells_of_a_rough_surface(case, tmp_path):
         assert abs(found[name] - exact[name]) <= allowed, name
 
 
+@pytest.mark.slow
 def test_sag_and_energy_of_a_round_cell_converge():
     """The spot's edge falls anywhere in an element, so errors change sign from mesh to mesh: the
     mean over neighbouring meshes is what converges."""

@@ -108,6 +108,7 @@ def test_every_start_ends_in_the_same_state(start):
         assert other.measures[name] == pytest.approx(base.measures[name], rel=1e-4), name
 
 
+@pytest.mark.slow
 def test_a_penalty_sinks_by_the_pressure_over_it():
     penalty = 2e4
     solution = rough(penalty=penalty, penetration_tolerance=0.2)
@@ -146,6 +147,7 @@ def test_a_penalty_that_drowns_the_asperities_is_no_success():
     assert solution.status is iga.Status.PENETRATION
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arrangement", "offset", "model", "wet"),
     some(
