@@ -25,7 +25,7 @@ def hints(
     """
     angle = float(np.min(substrate.contact_angle))
     texts = list(implausible(weight, liquid.surface_tension, liquid.density, volume))
-    if angle <= np.pi:
+    if 0.0 < angle <= np.pi:
         texts.append(
             f"substrate.contact_angle = {angle:g}: degrees? An angle below pi degrees is rare; "
             "angles are in degrees through the liquid"
@@ -36,7 +36,7 @@ def hints(
             "x and y and lifts off freely"
         )
     size = float(np.linalg.norm(bond))
-    if size > HEAVY:
+    if size > HEAVY and angle > 0.0:  # a perfectly wet one is a film
         texts.append(_heavy(size, liquid, volume, weight, angle))
     return tuple(texts)
 

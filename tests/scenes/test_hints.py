@@ -124,3 +124,9 @@ def test_water_in_si_is_believed():
         assert not iga.sessile_droplet(
             iga.Plane(100.0), volume=volume, liquid=WATER, gravity=9.81
         ).warnings
+
+
+def test_perfectly_wet_solids_are_not_asked_for_degrees():
+    pair = [iga.Sphere(0.0, 1.0, (0.0, 0.0, z)) for z in (-1.05, 1.05)]
+    scene = iga.sessile_droplet(None, volume=0.05, particles=pair)
+    assert scene.warnings == ()
