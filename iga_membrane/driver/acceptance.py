@@ -229,7 +229,7 @@ def too_soft(scene: Scene, assembly: Assembly, multipliers: Array) -> tuple[Stat
     """A penalty that cannot hold the membrane out of the spheres: it gives way by the traction
     ``p + 2 gamma / r`` over the penalty."""
     law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
-    if law is None or law.penalty is None or assembly.contact is None:
+    if law is None or law.penalty is None:
         return None
     length = assembly.contact.length
     curved = 0.0 if isinstance(law.solid, Plane) else 2.0 * assembly.tension / length

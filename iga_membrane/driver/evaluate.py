@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import thread_time
 from typing import Any
 
@@ -23,24 +23,14 @@ from ..solvers.load_stepping import Bracket, LoadStep, Progress
 from ..solvers.newton import NewtonResult
 from ..solvers.options import SolverOptions
 from ..solvers.stability import Stability, stability_of
-from ..status import REMEDY, Status
+from ..status import Status
 from ..surface.surface import Surface
 from ..terms import Centroid, Volume
 from ..verification.audit import audit
 from ..verification.evidence import Audit
-from ..verification.self_intersection import crossing
 from ..verification.trimmed_audit import trimmed_audit
-from .acceptance import (
-    contact_objection,
-    judge,
-    leaves_its_asperity,
-    overload,
-    reaches_boundary,
-    rests_on_a_point,
-    rolling,
-    too_soft,
-)
 from .contact_record import contact_record
+from .ending import Evidence, ending_of
 from .solution import Solution
 
 GRACE = 0.05
@@ -65,78 +55,31 @@ def conclude(
 ) -> Solution:
     """Measure, judge and record a state."""
     scene, result = outcome.scene, outcome.result
-    surface, multipliers = result.surface, result.multipliers
-    verdict, checked, kind, doubt = None, None, None, ""
-    status, message = result.status, result.message
+    surface, multipliers, scale = result.surface, result.multipliers, scene.units
+    values = measures(scene, assembly, surface, multipliers)
+    found = _evidence(outcome, assembly, options, started)
+    ending, verdict = ending_of(found), found.stability
+    assert ending.status is not None
+    contact = contact_record(scene, assembly, result, values, found.audit)
+    forces = _forces(scene, assembly, surface, multipliers)
     asked = scene.sector.model if options.stability == "model" else "full"
-    if status is Status.TOPOLOGY_CHANGE:
-        kind = "touches_in_a_point"  # the edge at 180 degrees has closed
-    if status in REMEDY:
-        message = f"{message}: {REMEDY[status]}{rolling(scene)}"
-    inside = volume(assembly, surface)
-    found = measures(scene, assembly, surface, multipliers)
-    try:
-        with until(started + (1.0 + GRACE) * options.max_cpu_s):
-            checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
-            verdict, doubt = _examined(scene, assembly, surface, multipliers, options.stability)
-    except OutOfTime as end:
-        if status is None:
-            status = Status.INTERRUPTED
-            message = f"an equilibrium, but {end} before it was judged: {REMEDY[status]}"
-    if status is None and verdict is None:
-        status, message = Status.CONVERGED_MARGINAL, f"no stability verdict: {doubt}"
-    hold = _hold_force(scene, assembly, multipliers, inside)
-    if status is None:
-        assert verdict is not None
-        status, message = judge(scene, verdict, checked, inside)
-        if assembly.contact.carries or assembly.contact.passes:
-            objection = contact_objection(scene, assembly, surface, multipliers)
-            if objection is not None:
-                status, kind, message = objection
-        point = rests_on_a_point(scene)
-        if point is not None:
-            status, kind, message = point
-    ends = not (assembly.contact.lies or assembly.contact.passes)
-    if status is Status.CONVERGED_STABLE and ends:
-        place = crossing(surface)
-        if place is not None:
-            status, kind = Status.TOPOLOGY_CHANGE, "self-contact"
-            x, y, z = scene.units.to_world(place)
-            message = f"the membrane meets itself at ({x:.4g}, {y:.4g}, {z:.4g})"
-    if result.floor is not None and status is not None:
-        message += f"; rounding ended the iteration, at a relative residual of {result.floor:.0e}"
-    sunk = too_soft(scene, assembly, multipliers)
-    if sunk is not None and status is not Status.INTERRUPTED:
-        status, message = sunk
-    if result.status not in (None, Status.INTERRUPTED) and reaches_boundary(scene, surface):
-        status, kind = Status.TOPOLOGY_CHANGE, "reaches boundary"
-        message = "the contact line reaches the rim: no sheet is left between them"
-    if status not in (Status.CONVERGED_STABLE, Status.INTERRUPTED):
-        message += overload(scene, assembly, multipliers)
-    left = leaves_its_asperity(scene, surface, status, message)
-    if left is not None:
-        status, kind, message = left
-    scale = scene.units
-    contact = contact_record(scene, assembly, result, found, checked)
-    total = thread_time() - started - assembly.compile_seconds
-    return Solution(
+    solution = Solution(
         scene=scene,
-        status=status,
-        message=message,
-        kind=kind,
+        status=ending.status,
+        message=ending.message,
+        kind=ending.kind,
         surface=surface.moved(scale.to_world(surface.points)),
-        measures=found,
-        forces=_forces(scene, assembly, surface, multipliers),
+        measures=values,
+        forces=forces,
         multipliers=_named(scene, assembly, multipliers),
         body=assembly.density(multipliers),
-        index=verdict.index if verdict else None,
-        lambda_min=verdict.smallest * scale.tension / scale.length**2 if verdict else None,
-        mode=_mode(scene, verdict) if status in UNSTABLE else None,
-        stability_scope=verdict.scope if verdict else asked,
-        mode_within=verdict.within if verdict else None,
-        audit=checked,
-        volume_error=_volume_error(scene, inside),
-        hold_force=hold,
+        index=None,
+        lambda_min=None,
+        mode=None,
+        stability_scope=asked,
+        audit=found.audit,
+        volume_error=_volume_error(scene, found.inside),
+        hold_force=_hold_force(scene, assembly, multipliers, found.inside),
         contact=contact,
         unknowns=assembly.size,
         iterations=tuple(result.iterations),
@@ -148,16 +91,45 @@ def conclude(
             "assembly": assembly.seconds,
             "linear": result.linear_seconds,
             "contact": 0.0,
-            "solve": total,
+            "solve": thread_time() - started - assembly.compile_seconds,
         },
-        warnings=_warnings(scene, verdict, asked, found),
+        warnings=_warnings(scene, verdict, asked, values),
+    )
+    return solution if verdict is None else _with_verdict(solution, verdict)
+
+
+def _evidence(
+    outcome: Outcome, assembly: Assembly, options: SolverOptions, started: float
+) -> Evidence:
+    """What can be known of a state within the CPU limit, and a little more."""
+    scene, result = outcome.scene, outcome.result
+    surface, multipliers = result.surface, result.multipliers
+    checked, verdict, doubt, late = None, None, "", ""
+    try:
+        with until(started + (1.0 + GRACE) * options.max_cpu_s):
+            checked = _audited(scene, assembly, surface, multipliers) if options.audit else None
+            verdict, doubt = _examined(scene, assembly, surface, multipliers, options.stability)
+    except OutOfTime as end:
+        late = str(end)
+    inside = volume(assembly, surface)
+    return Evidence(scene, assembly, result, inside, checked, verdict, doubt, late)
+
+
+def _with_verdict(solution: Solution, verdict: Stability) -> Solution:
+    """A solution with what is known of its stability."""
+    scale = solution.scene.units
+    return replace(
+        solution,
+        index=verdict.index,
+        lambda_min=verdict.smallest * scale.tension / scale.length**2,
+        mode=_mode(solution.scene, verdict) if solution.status in UNSTABLE else None,
+        stability_scope=verdict.scope,
+        mode_within=verdict.within,
     )
 
 
-def _mode(scene: Scene, verdict: Stability | None) -> Array | None:
+def _mode(scene: Scene, verdict: Stability) -> Array:
     """(count, 3) the softest motion of the control points in world axes, the largest 1."""
-    if verdict is None:
-        return None
     largest = np.linalg.norm(verdict.mode, axis=1).max()
     return np.asarray(verdict.mode @ scene.units.axes.T / largest)
 
