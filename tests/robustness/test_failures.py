@@ -18,7 +18,7 @@ from iga_membrane.deadline import OutOfTime
 from iga_membrane.driver import evaluate as conclude_module
 from iga_membrane.driver import solve as solve_module
 from iga_membrane.driver.result_file import result
-from iga_membrane.solvers import newton as newton_module
+from iga_membrane.solvers import direction
 from iga_membrane.status import REMEDY
 
 HARD = {
@@ -268,7 +268,7 @@ def test_too_little_memory_is_named(monkeypatch):
     def full(*arguments, **options):
         raise MemoryError
 
-    monkeypatch.setattr(newton_module, "Bordered", full)
+    monkeypatch.setattr(direction, "Bordered", full)
     solution = iga.solve(droplet(120, elements=8), on_fail="return")
     assert solution.status is iga.Status.LINEAR_SOLVE_FAILED
     assert "memory" in solution.message
@@ -294,12 +294,12 @@ PATH = path_file("substrate.contact_angle", ANGLES)
 STRUCK = """
 import os, signal, sys, time
 from iga_membrane import cli, files
-from iga_membrane.solvers import newton
+from iga_membrane.solvers import direction
 from iga_membrane.assembly.lagrangian import Assembly
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run in background
 place, scene, out = sys.argv[1:]
-owner, name = {"assembly": (Assembly, "system"), "factorization": (newton, "Bordered"),
+owner, name = {"assembly": (Assembly, "system"), "factorization": (direction, "Bordered"),
                "write": (files.os, "fsync")}[place]
 original, struck = getattr(owner, name), []
 

@@ -76,7 +76,7 @@ def test_accepted_steps_never_raise_the_energy(angle, monkeypatch):
     """Q17: the merit function falls with every step; at fixed volume it is the energy."""
     from iga_membrane.solvers import newton as module
 
-    search, begin, after = module._search, [], []
+    search, begin, after = module.search, [], []
 
     def watched(assembly, system, surface, displacement, direction, longest):
         part, moved = search(assembly, system, surface, displacement, direction, longest)
@@ -86,7 +86,7 @@ def test_accepted_steps_never_raise_the_energy(angle, monkeypatch):
                 where.append(found.total - direction.multipliers @ found.constraints)
         return part, moved
 
-    monkeypatch.setattr(module, "_search", watched)
+    monkeypatch.setattr(module, "search", watched)
     solution = iga.solve(droplet(angle, 2.0, elements=10))
     assert solution.success
     assert len(begin) >= 3

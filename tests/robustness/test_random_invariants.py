@@ -154,7 +154,7 @@ def test_accepted_steps_never_raise_the_energy(seed, monkeypatch):
     """Q17: at the volume asked for, once it is filled."""
     from iga_membrane.solvers import newton as module
 
-    search, fallen = module._search, []
+    search, fallen = module.search, []
 
     def watched(assembly, system, surface, displacement, direction, longest):
         part, moved = search(assembly, system, surface, displacement, direction, longest)
@@ -165,7 +165,7 @@ def test_accepted_steps_never_raise_the_energy(seed, monkeypatch):
             fallen.append((full, pairs[0] - pairs[1]))
         return part, moved
 
-    monkeypatch.setattr(module, "_search", watched)
+    monkeypatch.setattr(module, "search", watched)
     assert iga.solve(random_drop(seed).scene()).success
     assert len(fallen) >= 3
     assert min(drop for full, drop in fallen if full) >= -1e-11
