@@ -27,47 +27,80 @@ def check_parts(scene: Posed) -> None:
     ------
     SceneError
     """
+    for rule in (
+        _check_space,
+        _check_names,
+        _check_lines,
+        _check_directions,
+        _check_motion,
+        _check_start,
+        _check_gaps,
+        _check_tension,
+        _check_weight,
+    ):
+        rule(scene)
+
+
+def _check_space(scene: Posed) -> None:
     space = scene.surface.space
     splines = any(basis.knots is not None for basis in space.bases)
     if space.continuity < 1 and (splines or space.weights is not None):
         raise SceneError("surface: C1 needed between the elements of a spline space")
+
+
+def _check_names(scene: Posed) -> None:
     names = [term.name for term in scene.terms]
     for name in names:
         if names.count(name) > 1 and name not in ("gravity", "wetting"):
             raise SceneError(f'terms: "{name}" is listed {names.count(name)} times')
     if "pressure" in names and "volume" in names:
         raise SceneError("terms: pressure and volume are both prescribed; give one of them")
+
+
+def _check_lines(scene: Posed) -> None:
+    """Refuse lines that slide freely where they have no place."""
     sliding = [s.edge for s in scene.supports if isinstance(s, Sliding)]
     for term in scene.terms:
-        if not isinstance(term, WettingLine) or term.edge in sliding:
-            for solid in term.solids:
-                refuse_perfectly_wet(f'terms: "{term.name}"', solid)
-        if isinstance(term, WettingLine) and term.edge in sliding and term.strength >= term.gamma:
+        slides = not isinstance(term, WettingLine) or term.edge in sliding
+        for solid in term.solids if slides else ():
+            refuse_perfectly_wet(f'terms: "{term.name}"', solid)
+        if isinstance(term, WettingLine) and slides and term.strength >= term.gamma:
             raise SceneError(
                 "contact_angle = 180: a contact line that slides freely has no place at 180 "
                 "degrees, where the foot is a contact area; build the scene by "
                 "sessile_droplet or liquid_sheet, or hold the edge by Fixed"
             )
-    if scene.directions is not None and len(scene.directions) != space.count:
+
+
+def _check_directions(scene: Posed) -> None:
+    count = scene.surface.space.count
+    if scene.directions is not None and len(scene.directions) != count:
         raise SceneError(
-            f"directions: {len(scene.directions)} given, one for each of the {space.count} "
+            f"directions: {len(scene.directions)} given, one for each of the {count} "
             "control points is needed"
         )
+
+
+def _check_motion(scene: Posed) -> None:
     if (scene.motion == "cartesian") != any(isinstance(t, Stabilization) for t in scene.terms):
         raise SceneError(
             f'motion = "{scene.motion}": "cartesian" needs a Stabilization among the terms, '
             '"spines" none'
         )
-    near = scene.predictor
-    if near is not None and scene.start_from is None and near.surface.space.count != space.count:
+
+
+def _check_start(scene: Posed) -> None:
+    near, count = scene.predictor, scene.surface.space.count
+    if near is not None and scene.start_from is None and near.surface.space.count != count:
         raise SceneError(
             "start_from: missing; the predictor has another space, so it must be given, or "
             "predictor=None"
         )
-    _check_gaps(scene)
-    if "surface_tension" not in names:
+
+
+def _check_tension(scene: Posed) -> None:
+    if all(term.name != "surface_tension" for term in scene.terms):
         raise SceneError("terms: a membrane needs a SurfaceTension")
-    _check_weight(scene)
 
 
 def refuse_perfectly_wet(field: str, solid: object) -> None:
