@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,29 +24,31 @@ from ..terms import (
     Contact,
     Gravity,
     Scale,
-    SphereContactLine,
     SurfaceTension,
     Term,
-    TrimmedContactLine,
     Volume,
 )
 from ..terms.term import ROOM
-from .bridge import AtGap, bridge, easy_gap, ends_of, gap_between
+from .bridge import Ends, ends_of
 from .bridge import frame_of as frame_between
-from .contact_setup import CONTACT_LINES, foot_of
-from .continuation_path import from_alone, from_another_angle
+from .contact_setup import CONTACT_LINES
 from .description import described_droplet
-from .free import Displaced, frame_of, pulled_by, seat_of
-from .free_rim import RimOnPlane
+from .droplet_ways import (
+    between_particles,
+    built_for,
+    ramp_of,
+    with_its_particles,
+    with_its_ways,
+)
+from .free import frame_of, seat_of
 from .hints import hints
-from .moving import check_fixed, fixed, moving
+from .moving import check_fixed, fixed
 from .one_asperity import discretizations as asperity_lines
 from .osman_sauer import WholeMembrane, droplet_with_wetted_part
 from .particle_foot import discretizations as particle_lines
-from .particle_foot import with_particles
-from .recipe import Along, Recipe, family
-from .scene import Ramp, Scene
-from .spec import Question
+from .recipe import Recipe, family
+from .scene import Scene
+from .spec import Foot, Question
 from .well_posed import refuse_perfectly_wet
 
 ROUNDING = 1e-12
@@ -122,74 +124,43 @@ def sessile_droplet(
         A value out of its range; a model with a mirror plane that gravity or the substrate does not
         have; a start below the substrate.
     """
-    liquid, asked = with_defaults(liquid, discretization)
+    liquid, mesh = with_defaults(liquid, discretization)
     grains = check_particles(particles)
-    asked_substrate, beside = substrate, fixed(grains)
-    if substrate is None:
-        # its particle carries it
-        substrate, beside = seat_of(grains, hold), ()
-    check_fixed(substrate)
-    acceleration = np.array(gravity)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
-    ends = ends_of(asked_substrate, grains, contact_line, length)
-    if ends is None:
-        refuse_perfectly_wet("substrate", asked_substrate)
-        for i, each in enumerate(grains):
-            refuse_perfectly_wet(f"particle[{i}]", each)
-    if ends is not None:
-        origin, axes = frame_between(ends)
-    else:
-        origin, axes = _frame(substrate, free=asked_substrate is None)
-    local = acceleration @ axes
+    place = _placed(substrate, grains, hold, contact_line, length)
+    acceleration = np.array(gravity)
+    local = acceleration @ place.axes
     # a scene that is turned as a whole leans by rounding
     local[np.abs(local) <= ROUNDING * np.abs(local).max()] = 0.0
     if grains or penalty is not None or start is not None:
-        contact_line, *others = particle_lines(asked_substrate, grains, contact_line)
+        contact_line, *others = particle_lines(substrate, grains, contact_line)
     else:
         pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
-        contact_line, *others = asperity_lines(substrate, length, pushed, contact_line)
-    x, y, z = (tuple(float(a) for a in row) for row in axes)
-    scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
+        contact_line, *others = asperity_lines(place.carrier, length, pushed, contact_line)
+    x, y, z = (tuple(float(a) for a in row) for row in place.axes)
+    scale = Scale(length, liquid.surface_tension, place.origin, (x, y, z))
     bond = _bond_numbers(volume, liquid, local, scale)
-    scale.local_solid(substrate)  # refuses sizes that it cannot hold
-    if is_own(substrate):
-        check_solid(substrate, origin, length)
-    across = float(np.linalg.norm(bond[:2]))
-    hangs = asked_substrate is None and ends is None and hold == "none"
-    if hangs and across > 1e-9 * np.linalg.norm(bond):
-        raise SceneError(
-            "gravity.direction: a free droplet hangs on its particle along gravity, here they "
-            'differ; move the particle, or hold the droplet by droplet.hold = "xyz"'
-        )
-    terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
-    if bond.any():
-        gx, gy, gz = (float(g) for g in acceleration)
-        terms.append(Gravity(liquid.density, (gx, gy, gz)))
+    _check_carrier(place, scale, bond, hold)
     law = Contact(
-        substrate,
+        place.carrier,
         None if penalty is None else penalty * liquid.surface_tension / length**2,
         penetration_tolerance,
     )
     held = "" if hold == "none" else hold
-    parts = Question(substrate, asked, scale, bond, start, liquid, law, contact_line, beside, held)
-    if ends is not None:
-        built = bridge(parts, ends)
-    else:
-        built = with_particles(parts) if beside else foot_of(parts)
-    sector = built.sector
-    movable = "".join(axis for axis in "xyz" if axis not in sector.mirrored)
-    pinned = movable.strip("z") if isinstance(substrate, Plane) and not grains else ""
-    terms += [Centroid(axis) for axis in movable if axis in pinned or axis in held]
-    pull = float(np.linalg.norm(acceleration))
-
+    beside = fixed(grains) if substrate is not None else ()
+    parts = Question(
+        place.carrier, mesh, scale, bond, start, liquid, law, contact_line, beside, held
+    )
+    built = built_for(parts, place.ends)
+    terms = _terms(parts, built, volume, acceleration, grains)
     recipe = Recipe(
         "sessile_droplet",
         {
-            "substrate": asked_substrate,
+            "substrate": substrate,
             "volume": volume,
             "liquid": liquid,
             "gravity": [float(g) for g in acceleration],
-            "discretization": replace(asked, model=sector.model),
+            "discretization": replace(mesh, model=built.sector.model),
             "hold": hold,
             "contact_line": contact_line,
             "particles": fixed(grains),
@@ -197,81 +168,105 @@ def sessile_droplet(
             "penetration_tolerance": penetration_tolerance,
         },
     )
-    # at 180 degrees on a plane there is nothing to start from without gravity
-    has_way = (
-        isinstance(substrate, Sphere)
-        or contact_line == "conforming"
-        or (isinstance(substrate, Plane) and substrate.contact_angle < 180.0)
-    )
-    described = described_droplet(asked_substrate, volume, liquid, acceleration, hold, grains)
-    ramp = None
-    if ends is not None and (near := easy_gap(parts, ends)) is not None:
-        ramp = Ramp(
-            "gap",
-            (near, gap_between(ends)),
-            AtGap(recipe, ends),
-        )
-    elif bond.any() and has_way:
-        ramp = Ramp("gravity.acceleration", (0.0, pull), Along(recipe, "gravity.acceleration"))
-    elif asked_substrate is None and held:
-        values = (0.0, pulled_by(grains[0], length))
-        ramp = Ramp("particle[0] displacement", values, Displaced(recipe, grains[0], length))
+    described = described_droplet(substrate, volume, liquid, acceleration, hold, grains)
+    pull = float(np.linalg.norm(acceleration))
     scene = Scene(
         built.surface,
         [*terms, *built.terms],
-        [*built.supports, sector],
+        [*built.supports, built.sector],
         scale=scale,
         grading=built.grading,
         directions=built.directions,
-        ramp=ramp,
-        substrate=substrate,
+        ramp=ramp_of(parts, place.ends, recipe, pull),
+        substrate=place.carrier,
         particles=fixed(grains),
         acceleration=vector("gravity", acceleration),
         liquid_density=liquid.density,
         hold=held,
         recipe=recipe,
         kind="sessile_droplet",
-        description=described | {"discretization": built.mesh.described(sector.model)},
-        warnings=hints(substrate, liquid, volume, pull, tuple(bond)),
+        description=described | {"discretization": built.mesh.described(built.sector.model)},
+        warnings=hints(place.carrier, liquid, volume, pull, tuple(bond)),
     )
     if membrane is not None:
-        return droplet_with_wetted_part(scene, asked, parts.down, parts.law, start, membrane)
+        return droplet_with_wetted_part(scene, mesh, parts.down, parts.law, start, membrane)
     if others:
         # a mesh that was chosen for one asperity says nothing of another's discretization
-        mesh = asked if grains else Discretization()
-        other = recipe.changed(contact_line=others[0], discretization=mesh)
+        again = mesh if grains else Discretization()
+        other = recipe.changed(contact_line=others[0], discretization=again)
         scene = replace(scene, otherwise=other)
-    if ends is not None or asked_substrate is None:
-        toward = (
-            axes[:, 2] * ([[1.0], [-1.0]] if asked_substrate is None else [[-1.0]])[: len(grains)]
-        )
-        gamma = liquid.surface_tension
-        scene = replace(scene, free_edge=built.free_edge)
-        return moving(scene, grains, toward, gamma, recipe)
+    if place.ends is not None or substrate is None:
+        return between_particles(scene, built, grains, place.axes[:, 2])
     if grains:
-        line, gamma = built.terms[-1], liquid.surface_tension
-        if built.alone is None:
-            alone = recipe.scene(
-                particles=(), hold="none", discretization=Discretization(), contact_line="auto"
-            )
-        else:
-            # it must not roll away from its particles
-            bare = [*terms, *(Centroid(axis) for axis in movable.strip("z") if axis not in held)]
-            alone = from_another_angle(replace(scene, particles=(), origin=None), bare, built.alone)
-        scene = replace(scene, start_from=built.start_from)
-        scene = from_alone(scene, alone)
-        assert isinstance(line, (TrimmedContactLine, SphereContactLine))
-        toward = np.atleast_2d(np.array(line.toward))
-        return moving(scene, grains, toward, gamma, recipe)
-    if built.directions is not None and asked.elements is None and start is None:
-        twice = replace(asked, model=sector.model, elements=2 * built.mesh.elements)
-        scene = replace(scene, finer=recipe.changed(discretization=twice))
-    if built.predictor:
-        return from_another_angle(scene, terms, built)
-    if not built.tangent:
-        return scene
+        return with_its_particles(scene, built, grains, terms)
+    return with_its_ways(scene, built, parts, terms)
 
-    return replace(scene, free_edge=RimOnPlane(recipe))
+
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Where a droplet is.
+
+    Attributes
+    ----------
+    carrier : the solid it stands on, or the particle that carries a free one.
+    ends : the two solids that it bridges, or None.
+    origin, axes : of its frame; axes are columns.
+    free : whether it touches nothing but particles.
+    """
+
+    carrier: Solid
+    ends: Ends | None
+    origin: tuple[float, float, float]
+    axes: Array
+    free: bool
+
+
+def _placed(
+    substrate: Solid | None,
+    grains: tuple[Sphere, ...],
+    hold: str,
+    contact_line: str,
+    length: float,
+) -> _Place:
+    """Where a droplet of a length is, on what was asked for."""
+    carrier = seat_of(grains, hold) if substrate is None else substrate
+    check_fixed(carrier)
+    ends = ends_of(substrate, grains, contact_line, length)
+    if ends is not None:
+        return _Place(carrier, ends, *frame_between(ends), substrate is None)
+    refuse_perfectly_wet("substrate", substrate)
+    for i, each in enumerate(grains):
+        refuse_perfectly_wet(f"particle[{i}]", each)
+    return _Place(carrier, None, *_frame(carrier, free=substrate is None), substrate is None)
+
+
+def _check_carrier(place: _Place, scale: Scale, bond: Array, hold: str) -> None:
+    """Refuse solids that the scene's frame cannot hold, and gravity across a free droplet."""
+    scale.local_solid(place.carrier)  # refuses sizes that it cannot hold
+    if is_own(place.carrier):
+        check_solid(place.carrier, place.origin, scale.length)
+    across = float(np.linalg.norm(bond[:2]))
+    hangs = place.free and place.ends is None and hold == "none"
+    if hangs and across > 1e-9 * np.linalg.norm(bond):
+        raise SceneError(
+            "gravity.direction: a free droplet hangs on its particle along gravity, here they "
+            'differ; move the particle, or hold the droplet by droplet.hold = "xyz"'
+        )
+
+
+def _terms(
+    parts: Question, built: Foot, volume: float, acceleration: Array, grains: tuple[Sphere, ...]
+) -> list[Term]:
+    """What the liquid pays for, its contact left out."""
+    liquid = parts.liquid
+    terms: list[Term] = [SurfaceTension(liquid.surface_tension), Volume(volume)]
+    if parts.bond.any():
+        gx, gy, gz = (float(g) for g in acceleration)
+        terms.append(Gravity(liquid.density, (gx, gy, gz)))
+    movable = "".join(axis for axis in "xyz" if axis not in built.sector.mirrored)
+    on_plane = isinstance(parts.substrate, Plane) and not grains
+    pinned = movable.strip("z") if on_plane else ""
+    return terms + [Centroid(axis) for axis in movable if axis in pinned or axis in parts.held]
 
 
 def _frame(substrate: Solid, *, free: bool) -> tuple[tuple[float, float, float], Array]:

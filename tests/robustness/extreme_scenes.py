@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 from robustness.extreme_kinds import KINDS
-from scipy.stats import qmc
 
 import iga_membrane as iga
 
@@ -67,13 +66,24 @@ class Extreme:
         return float(np.max(errors, initial=0.0))
 
 
+def latin_hypercube(count, axes, rng):
+    """(count, axes) points in the unit cube, as ``scipy.stats.qmc`` draws them, whose argument for
+    ``rng`` is called by another name before scipy 1.15."""
+    (rng,) = rng.spawn(1)
+    within = rng.uniform(size=(count, axes))
+    places = np.tile(np.arange(1, count + 1), (axes, 1))
+    for row in places:
+        rng.shuffle(row)
+    return (places.T - within) / count
+
+
 def extreme_scenes(seed: int, count: int = 300) -> list[Extreme]:
     """A hypercube per kind, in a random order."""
     found = []
     for number, (name, kind) in enumerate(KINDS.items()):
         some = max(1, round(kind.share * count))
-        sampler = qmc.LatinHypercube(len(kind.ranges), rng=np.random.default_rng([seed, number]))
-        found += [Extreme(name, tuple(row)) for row in sampler.random(some).tolist()]
+        rows = latin_hypercube(some, len(kind.ranges), np.random.default_rng([seed, number]))
+        found += [Extreme(name, tuple(row)) for row in rows.tolist()]
     order = np.random.default_rng(seed).permutation(len(found))
     return [found[k] for k in order]
 
