@@ -16,19 +16,12 @@ from ..checks import words
 from ..dofs.boundary_conditions import Fixed, Model, Sector, Sliding, Support
 from ..errors import SceneError
 from ..initial.liquid import MODELS, Discretization, Liquid, Mesh, with_defaults
-from ..initial.profiles import check_net, funnel
+from ..initial.profiles import check_net
+from ..initial.sheet_start import sheet_grading, sheet_space, sheet_start
 from ..initial.sheet_through import sheet_through
 from ..solids import Sphere
-from ..splines import Grading, Space, points_of
-from ..surface.ring import (
-    axisymmetric,
-    circle,
-    drop_space,
-    meridian_interpolation,
-    ring_space,
-    square,
-)
-from ..surface.shapes import sheet as flat_square
+from ..splines import Grading, points_of
+from ..surface.ring import circle
 from ..surface.surface import Surface
 from ..terms import (
     Gravity,
@@ -103,57 +96,26 @@ def liquid_sheet(
     liquid, asked = with_defaults(liquid, discretization)
     through = contact_line == "trimmed"
     mesh = asked.mesh(**(THROUGH if through else {"elements": 8 if boundary == "square" else 20}))
-    if pressure is not None and volume is not None:
-        raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
     sector = _sector(mesh, particle)
-    gamma = liquid.surface_tension
-    tangent = particle is not None and particle.contact_angle == 180.0
-    if tangent and (boundary == "square" or (sector.model in ("full", "half") and not mesh.model)):
-        raise SceneError(
-            "particle.contact_angle = 180: not available yet with a square rim or off the axis"
-        )
+    own_sector = mesh.model is None and sector.model in ("full", "half")
+    _check_asked(particle, boundary, pressure, volume, own_sector)
     described = _describe(
         particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
     )
+    if particle is not None:
+        _check_place(particle, size, boundary)
     if membrane is not None:
         if particle is None or pressure or volume is not None or liquid_weight or start is not None:
             raise SceneError(
                 'solver.contact_line = "line_load": not available yet for a sheet without a '
                 "particle, with pressure, volume or the liquid's weight, or from a start"
             )
-        _check_place(particle, size, boundary)
         mesh = asked.mesh(degree=3, elements=18)
         return sheet_with_wetted_part(
             particle, size, boundary, liquid, gravity, mesh, sector, membrane, described
         )
-    terms: list[Term] = [SurfaceTension(gamma)]
-    supports: list[Support] = [sector]
-    if through and (particle is None or tangent or start is not None or mesh.space != "bspline"):
-        raise SceneError(
-            'solver.contact_line = "trimmed": needs a particle below 180 degrees, the scene\'s own '
-            'start and space "bspline"'
-        )
-    if particle is None or through:
-        supports += [Fixed(edge) for edge in _rim_edges(boundary)]
-        if particle is not None:
-            _check_place(particle, size, boundary)
-            terms.append(TrimmedContactLine(gamma, particle))
-    else:
-        _check_place(particle, size, boundary)
-        terms.append(SphereContactLine(gamma, particle))
-        edge = Fixed("xi2=0") if tangent else Sliding("xi2=0", particle)
-        supports += [edge, Fixed("xi2=1")]
-    if volume is not None:
-        # a sheet's volume is signed, so the constraint's positive scale is the rim's own
-        whole = np.pi * (0.5 * size) ** 3
-        terms.append(Volume(whole, ends=whole - volume))
-    else:
+    if volume is None:
         pressure = 0.0 if pressure is None else pressure
-        if pressure:
-            terms.append(Pressure(pressure))
-    if liquid_weight and gravity * liquid.density:
-        terms.append(Gravity(liquid.density, (0.0, 0.0, -gravity)))
-
     recipe = Recipe(
         "liquid_sheet",
         {
@@ -169,31 +131,34 @@ def liquid_sheet(
             "contact_line": contact_line,
         },
     )
-
-    ramp, directions = None, None
-    if through and particle is not None:
-        curvature = (pressure or 0.0) / gamma
+    gamma = liquid.surface_tension
+    directions, ramp, curvature = None, None, (pressure or 0.0) / gamma
+    if through:
+        wrong = particle is None or particle.contact_angle == 180.0 or mesh.space != "bspline"
+        if particle is None or wrong or start is not None:
+            raise SceneError(
+                'solver.contact_line = "trimmed": needs a particle below 180 degrees, the scene\'s '
+                'own start and space "bspline"'
+            )
         surface, directions = sheet_through(particle, 0.5 * size, boundary, mesh, curvature)
     elif start is None:
-        surface = _start(particle, size, boundary, mesh, (pressure or 0.0) / gamma, volume)
-        if particle is not None:
-            if particle.contact_angle != EASY and not tangent:
-                ramp = _ramp(recipe, "particle[0].contact_angle", EASY, particle.contact_angle)
-        elif pressure:
-            ramp = _ramp(recipe, "sheet.pressure", 0.0, pressure)
-        elif volume:
-            ramp = _ramp(recipe, "sheet.volume", 0.0, volume)
+        surface = sheet_start(particle, size, boundary, mesh, curvature, volume)
+        ramp = _ramp_of(recipe)
     else:
         surface = start
-        check_net(start, _space(particle, boundary, mesh))
+        check_net(start, sheet_space(particle, boundary, mesh))
+    lines, supports = _lines(particle, boundary, gamma, through=through)
+    terms = [SurfaceTension(gamma), *lines, *_bodies(size, pressure, volume)]
+    if liquid_weight and gravity * liquid.density:
+        terms.append(Gravity(liquid.density, (0.0, 0.0, -gravity)))
     length = 0.5 * size if particle is None else particle.radius
     Scale(length, gamma).check_lengths("sheet.size", size)
     scene = Scene(
         surface,
         terms,
-        supports,
+        [sector, *supports],
         scale=Scale(length, gamma),
-        grading=Grading() if particle is None or through else _grading(surface, size),
+        grading=Grading() if particle is None or through else sheet_grading(surface, size),
         ramp=ramp,
         directions=directions,
         substrate=particle,
@@ -206,11 +171,63 @@ def liquid_sheet(
     )
     if particle is None:
         return scene
-    if tangent:
+    if particle.contact_angle == 180.0:
         scene = replace(scene, free_edge=EdgeOnSphere(particle))
     liquid_above = np.array([[0.0, 0.0, 1.0]])
     started = recipe.changed(start=start)
     return moving(scene, [particle], liquid_above, gamma, started, "particle")
+
+
+def _check_asked(
+    particle: Sphere | None,
+    boundary: str,
+    pressure: float | None,
+    volume: float | None,
+    off_axis: bool,
+) -> None:
+    """Refuse what contradicts itself, and a particle at 180 degrees where it is not built."""
+    if pressure is not None and volume is not None:
+        raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
+    tangent = particle is not None and particle.contact_angle == 180.0
+    if tangent and (boundary == "square" or off_axis):
+        raise SceneError(
+            "particle.contact_angle = 180: not available yet with a square rim or off the axis"
+        )
+
+
+def _lines(
+    particle: Sphere | None, boundary: str, gamma: float, *, through: bool
+) -> tuple[list[Term], list[Support]]:
+    """What the line on a particle costs, and how rim and line are held."""
+    if particle is None or through:
+        rim: list[Support] = [Fixed(edge) for edge in _rim_edges(boundary)]
+        return [TrimmedContactLine(gamma, particle)] if particle is not None else [], rim
+    tangent = particle.contact_angle == 180.0
+    edge = Fixed("xi2=0") if tangent else Sliding("xi2=0", particle)
+    return [SphereContactLine(gamma, particle)], [edge, Fixed("xi2=1")]
+
+
+def _bodies(size: float, pressure: float | None, volume: float | None) -> list[Term]:
+    """The volume that is held, or the pressure, if there is any."""
+    if volume is not None:
+        # a sheet's volume is signed, so the constraint's positive scale is the rim's own
+        whole = np.pi * (0.5 * size) ** 3
+        return [Volume(whole, ends=whole - volume)]
+    return [Pressure(pressure)] if pressure else []
+
+
+def _ramp_of(recipe: Recipe) -> Ramp | None:
+    """The way to a sheet from an easier angle of its particle, or from a flat one."""
+    given = recipe.arguments
+    particle = given["particle"]
+    if particle is not None:
+        easy = particle.contact_angle in (EASY, 180.0)
+        path, ends = "particle[0].contact_angle", (EASY, particle.contact_angle)
+        return None if easy else _ramp(recipe, path, *ends)
+    for name in ("pressure", "volume"):
+        if given[name]:
+            return _ramp(recipe, f"sheet.{name}", 0.0, given[name])
+    return None
 
 
 def _ramp(recipe: Recipe, path: str, first: float, last: float) -> Ramp:
@@ -287,94 +304,6 @@ def _check_place(particle: Sphere, size: float, boundary: str) -> None:
             f"particle[0].center = {list(particle.center)}: must lie inside the rim, less than "
             f"{0.5 * size:g} from its middle"
         )
-
-
-def _space(particle: Sphere | None, boundary: str, mesh: Mesh) -> Space:
-    if particle is not None:
-        corners = boundary == "square"
-        return ring_space(mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=corners)
-    if boundary == "circle":
-        return drop_space(mesh.space, mesh.degree, mesh.elements)
-    kind = "bspline" if mesh.space == "nurbs" else mesh.space
-    return flat_square(1.0, elements=mesh.elements, degree=mesh.degree, space=kind).space
-
-
-def _start(
-    particle: Sphere | None,
-    size: float,
-    boundary: str,
-    mesh: Mesh,
-    curvature: float,
-    volume: float | None,
-) -> Surface:
-    """A funnel on the particle, a spherical cap in the circle, a bulge in the square."""
-    space, half = _space(particle, boundary, mesh), 0.5 * size
-    if particle is not None:
-        return _funnel(space, particle, half, boundary, curvature)
-    if boundary == "circle":
-        depth = _cap_depth(curvature * half, None if volume is None else volume / half**3)
-        return _cap(space, half, half * depth)
-    y, x = np.moveaxis(2.0 * space.abscissae - 1.0, -1, 0)
-    # a uniform load bends the unit square by 0.0737 of it in the middle; the bulge holds 4/9
-    depth = 0.0737 * curvature * size**2 if volume is None else 9.0 / 4.0 * volume / size**2
-    z = -np.clip(depth, -half, half) * (1.0 - x**2) * (1.0 - y**2)
-    net = np.stack([half * x, half * y, z], axis=-1)
-    return Surface(space, net.reshape(-1, 3))
-
-
-def _funnel(
-    space: Space, particle: Sphere, half: float, boundary: str, curvature: float
-) -> Surface:
-    """The sheet of small slopes from its circle on the sphere to the rim."""
-    r, (x, y, _) = particle.radius, particle.center
-    profile = funnel(particle, half, curvature)
-    ring = circle(space.bases[0])
-    outer = half * ring if boundary == "circle" else half * square(space.bases[0])
-    inner = np.array([x, y, 0.0]) + r * profile.edge * ring
-    points, matrix = meridian_interpolation(space)
-    sag = r * profile.height(profile.edge + (profile.rim - profile.edge) * points)
-    values = np.stack([1.0 - points, points, sag], axis=1)
-    first, second, height = np.linalg.solve(matrix, values).T[:, :, None]
-    up = np.array([0.0, 0.0, 1.0])
-    net = inner[:, None] * first + outer[:, None] * second + height * up
-    return Surface(space, points_of(space, net))
-
-
-def _grading(surface: Surface, size: float) -> Grading:
-    """Shorter steps near the particle, where the sheet falls like a logarithm; 0.8 balances the
-    errors of round and square rims (docs/results/sheet_and_particle.md)."""
-    inner = surface.net[:, 0, :2]
-    radius = np.linalg.norm(inner - inner.mean(axis=0), axis=1).mean()
-    if not radius > 0:
-        raise SceneError("start: its inner edge is a point; give it a ring round the particle")
-    rate = 0.8 * np.log(0.5 * size / radius)
-    return Grading(float(rate / np.expm1(rate))) if rate > 0 else Grading()
-
-
-def _cap_depth(curvature: float, volume: float | None) -> float:
-    """Depth over rim radius of the spherical cap of a pressure over tension, or of a volume."""
-    if volume is not None:
-        # pi h (3 + h^2) / 6 = V
-        return float(2.0 * np.sinh(np.arcsinh(3.0 * volume / np.pi) / 3.0))
-    return float(np.tan(0.5 * np.arcsin(np.clip(0.5 * curvature, -1.0, 1.0))))
-
-
-def _cap(space: Space, rim: float, depth: float) -> Surface:
-    """Spherical cap that hangs below its rim; the ring runs clockwise, so the normal points down.
-
-    Depth and rim radius give the opening: ``tan(turn / 2) = depth / rim``.
-    """
-    turn = 2.0 * np.arctan(depth / rim)
-
-    def profile(t: Array) -> tuple[Array, Array, Array]:
-        angle = (1.0 - t) * turn
-        over_sine = turn / np.sin(turn) if depth else 1.0
-        r = rim * (1.0 - t) * np.sinc(angle / np.pi) * over_sine
-        rise = 0.5 * (1.0 - t) * angle * np.sinc(0.5 * angle / np.pi) ** 2 * over_sine
-        return r, rim * rise - depth, -rim * np.cos(angle) * over_sine
-
-    counterclockwise = axisymmetric(space, profile)
-    return counterclockwise.moved(counterclockwise.points * [1.0, -1.0, 1.0])
 
 
 def _describe(
