@@ -16,7 +16,7 @@ from ..driver.free_particles import LOST, Places
 from ..driver.solution import Solution
 from ..driver.solve import solve
 from ..errors import SceneError, SolveError
-from ..problems.scene import Scene
+from ..problems.scene import FreeParticles, Scene
 from ..solids import Sphere
 from ..solvers.load_stepping import Bracket
 from ..solvers.options import SolverOptions
@@ -86,7 +86,6 @@ def pull_off(
     SolveError
         If the particle has no equilibrium where it stands, does not detach, or a limit is reached.
     """
-    options = SolverOptions() if options is None else options
     free = scene.free_particles
     if free is None or len(free.which) != 1:
         raise SceneError(
@@ -98,65 +97,105 @@ def pull_off(
             'particle.motion = "vertical": here that line leads along the liquid\'s surface; '
             'choose "normal"'
         )
-    way, number = float(np.sign(free.outward[0])), int(free.which[0])
-    until = thread_time() + options.max_cpu_s
+    pull = _Pull(scene, free, SolverOptions() if options is None else options, report)
+    here, beyond, lost = pull.search()
+    most = pull.largest()
+    solutions = [one for one in pull.places.found if one.success]
+    order, number = np.argsort(list(pull.held)), int(free.which[0])
+    unit, ways = pull.way * pull.radius, sorted(pull.held)
+    return PullOff(
+        pull.held[most],
+        unit * most,
+        Bracket(f"particle[{number}] displacement", unit * here, unit * beyond, 0, lost.index or 0),
+        "line" if pull.share_of_line(solutions) >= 1.0 - REACHED else "film",
+        [unit * w for w in ways],
+        [pull.held[w] for w in ways],
+        [solutions[k] for k in order],
+    )
 
-    def solve_fixed(at: Scene) -> Solution:
-        left = max(until - thread_time(), 1e-3)
-        return solve(at, replace(options, max_cpu_s=left), on_fail="return")
 
-    places, radius, line = Places(free, solve_fixed), float(free.radii[0]), free.lines[0]
-    held: dict[float, float] = {}
+class _Pull:
+    """A particle on its way out of the liquid, along its line.
 
-    def pulled(place: float) -> Solution:
-        solution = places.at(np.array([way * place]))
+    Attributes
+    ----------
+    way : 1 along the line, -1 against it; radius : of the particle.
+    places : solves with the particle fixed; held : force that holds it, by its way in radii.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        free: FreeParticles,
+        options: SolverOptions,
+        report: Callable[[float], None],
+    ) -> None:
+        self.way, self.radius = float(np.sign(free.outward[0])), float(free.radii[0])
+        self.held: dict[float, float] = {}
+        self._scene, self._free, self._number = scene, free, int(free.which[0])
+        self._options, self._report = options, report
+        self._until = thread_time() + options.max_cpu_s
+        self.places = Places(free, self._solved)
+
+    def _solved(self, at: Scene) -> Solution:
+        left = max(self._until - thread_time(), 1e-3)
+        return solve(at, replace(self._options, max_cpu_s=left), on_fail="return")
+
+    def at(self, place: float) -> Solution:
+        """The solution with the particle at a place, in radii along its way."""
+        solution = self.places.at(np.array([self.way * place]))
         if solution.success:
-            forces = solution.forces[number]
-            held[place] = -way * float((forces.effective - forces.weight) @ line)
-            report(place * radius)
+            forces = solution.forces[self._number]
+            pull = (forces.effective - forces.weight) @ self._free.lines[0]
+            self.held[place] = -self.way * float(pull)
+            self._report(place * self.radius)
         elif solution.status not in LOST:
             raise SolveError(f"{solution.status.name}: {solution.message}", solution)
         return solution
 
-    first = pulled(0.0)
-    if not first.success:
-        raise SolveError(f"{first.status.name}: {first.message}", first)
-    here, step, failed = 0.0, FIRST, None
-    while failed is None or failed - here > WIDTH:
-        ahead = here + step if failed is None else 0.5 * (here + failed)
-        last = pulled(ahead)
-        if last.success:
-            here, step = ahead, min(1.5 * step, LONGEST)
-        else:
-            failed, beyond = ahead, last
-        if here > FARTHEST:
-            raise SolveError(f"the particle does not detach within {FARTHEST:g} radii", last)
-    ways = sorted(held)
-    most = ways[int(np.argmax([held[w] for w in ways]))]
-    if 0.0 < most < ways[-1]:
-        k, poor = ways.index(most), -min(held.values())
+    def search(self) -> tuple[float, float, Solution]:
+        """The last place that holds the particle, the first that does not, and how that ends."""
+        first = self.at(0.0)
+        if not first.success:
+            raise SolveError(f"{first.status.name}: {first.message}", first)
+        here, step = 0.0, FIRST
+        last = self.at(step)
+        while last.success:
+            here, step = here + step, min(1.5 * step, LONGEST)
+            if here > FARTHEST:
+                raise SolveError(f"the particle does not detach within {FARTHEST:g} radii", last)
+            last = self.at(here + step)
+        failed, lost = here + step, last
+        while failed - here > WIDTH:
+            middle = 0.5 * (here + failed)
+            last = self.at(middle)
+            if last.success:
+                here = middle
+            else:
+                failed, lost = middle, last
+        return here, failed, lost
+
+    def largest(self) -> float:
+        """The place of the largest force."""
+        ways = sorted(self.held)
+        most = ways[int(np.argmax([self.held[w] for w in ways]))]
+        if not 0.0 < most < ways[-1]:
+            return most
+        k, poor = ways.index(most), -min(self.held.values())
         found = minimize_scalar(
-            lambda place: -held[place] if pulled(place).success else poor,
+            lambda place: -self.held[place] if self.at(place).success else poor,
             bounds=(ways[k - 1], ways[k + 1]),
             method="bounded",
             options={"xatol": 1e-2 * (ways[k + 1] - ways[k - 1])},
         )
-        most = max([most, float(found.x)], key=lambda place: held.get(place, -np.inf))
-    ways = sorted(held)
-    name = f"particle[{number}] displacement"
-    solutions = [one for one in places.found if one.success]
-    particle = scene.particles[number] if scene.particles else scene.substrate
-    assert isinstance(particle, Sphere)
-    half = 0.5 * np.radians(particle.contact_angle)
-    most_of_line = 2.0 * np.pi * free.tension * radius * float(np.cos(half)) ** 2
-    of_line = max(-way * float(one.forces[number].contact_line @ line) for one in solutions)
-    order = np.argsort(list(held))
-    return PullOff(
-        held[most],
-        way * most * radius,
-        Bracket(name, way * here * radius, way * failed * radius, 0, beyond.index or 0),
-        "line" if of_line >= (1.0 - REACHED) * most_of_line else "film",
-        [way * w * radius for w in ways],
-        [held[w] for w in ways],
-        [solutions[k] for k in order],
-    )
+        return max([most, float(found.x)], key=lambda place: self.held.get(place, -np.inf))
+
+    def share_of_line(self, solutions: Sequence[Solution]) -> float:
+        """Largest force of the contact line over the most that a line can have."""
+        scene, line = self._scene, self._free.lines[0]
+        particle = scene.particles[self._number] if scene.particles else scene.substrate
+        assert isinstance(particle, Sphere)
+        half = 0.5 * np.radians(particle.contact_angle)
+        most = 2.0 * np.pi * self._free.tension * self.radius * float(np.cos(half)) ** 2
+        forces = (one.forces[self._number].contact_line for one in solutions)
+        return max(-self.way * float(force @ line) for force in forces) / most

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..dofs.boundary_conditions import Sector, Shift
+from ..dofs.boundary_conditions import Model, Sector, Shift, Support
 from ..errors import SceneError
-from ..initial.closed_droplet import ball, fine_at, smallest_model, whole_skin
+from ..initial.closed_droplet import Skin, ball, fine_at, smallest_model, whole_skin
 from ..initial.liquid import MODELS, Liquid, space_name
 from ..initial.profiles import check_clear, drop_on_sphere
 from ..initial.resolution import Pattern, cell_of
@@ -34,9 +34,40 @@ def on_an_area(parts: Question) -> Foot:
             f'discretization.space = "{space_name(parts.asked.space)}": a membrane over its whole '
             'foot needs "bspline"'
         )
-    x, y, _ = (float(b) for b in parts.bond)
     local = scale.local_solid(substrate)
     particles = [scale.local_sphere(each) for each in parts.particles]
+    sector = Sector(_model_of(parts, local, particles))
+    mesh = parts.asked.mesh(degree=2, elements=-1)
+    length, least = min(local.scale, COARSEST), float(np.min(substrate.contact_angle))
+    attracts = parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP)
+    lies = attracts or least == 180.0
+    penalized = parts.law.penalty is not None and not isinstance(substrate, Plane)
+    single = not penalized and (least == 180.0 or parts.contact_line == "auto") and not particles
+    psi = float(np.radians(180.0 - least))
+    pattern = Pattern(length, cell_of(local), lies, psi, single, penalized)
+    fine = [fine_at(each) for each in particles]
+    elements = max(mesh.elements, 0)
+    skin = whole_skin(parts.down, BALL, pattern, mesh.degree, elements, parts.start, fine)
+    law = _law_of(parts, skin, pattern)
+    foot = Foot(
+        _start_of(parts, skin),
+        sector,
+        replace(mesh, elements=skin.space.bases[0].elements // 2),
+        [law],
+        _shift_of(parts, skin, sector, lies=lies),
+        directions=skin.directions,
+    )
+    if least == 180.0:
+        return foot
+    if skin.ring is not None:
+        # from where they repel, no more asperities are met than pull the membrane down on others
+        return replace(foot, predictor=[replace(law, solid=with_angle(law.solid, 180.0))])
+    return _attracting(foot, parts) if attracts else _through(foot, parts, skin.pressure)
+
+
+def _model_of(parts: Question, local: Solid, particles: list[Sphere]) -> Model:
+    """The model asked for, or the smallest that gravity, the solid and particles allow."""
+    x, y, _ = (float(b) for b in parts.bond)
     smallest = smallest_model(local, 1.5, (x, y), particles)
     model = parts.asked.model or smallest
     if MODELS.index(model) > MODELS.index(smallest):
@@ -44,62 +75,56 @@ def on_an_area(parts: Question) -> Foot:
             f'discretization.model = "{model}": gravity, the substrate or particles have no such '
             f'mirror planes; "{smallest}" is the smallest model here'
         )
-    unit, mesh = BALL, parts.asked.mesh(degree=2, elements=-1)
-    length, elements = min(local.scale, COARSEST), max(mesh.elements, 0)
-    least = float(np.min(substrate.contact_angle))
-    attracts = parts.contact_line == "adhesion" or (parts.contact_line == "auto" and least > SHARP)
-    lies = attracts or least == 180.0
-    unit_law = scale.length**2 / scale.tension
-    penalized = parts.law.penalty is not None and not isinstance(substrate, Plane)
-    single = not penalized and (least == 180.0 or parts.contact_line == "auto") and not particles
-    psi = float(np.radians(180.0 - least))
-    pattern = Pattern(length, cell_of(local), lies, psi, single, penalized)
-    skin = whole_skin(
-        parts.down,
-        unit,
-        pattern,
-        mesh.degree,
-        elements,
-        parts.start,
-        [fine_at(p) for p in particles],
-    )
-    mesh = replace(mesh, elements=skin.space.bases[0].elements // 2)
-    surface = Surface(skin.space, scale.to_world(skin.points))
-    if isinstance(parts.start, Surface):
-        surface = surface.moved(parts.start.points)
-        check_clear(surface, substrate, DEEPEST * min(substrate.scale, scale.length))
-    sector = Sector(model)
+    return model
+
+
+def _start_of(parts: Question, skin: Skin) -> Surface:
+    """The skin in the world, or the start that was given."""
+    surface = Surface(skin.space, parts.scale.to_world(skin.points))
+    if not isinstance(parts.start, Surface):
+        return surface
+    given, solid = surface.moved(parts.start.points), parts.substrate
+    check_clear(given, solid, DEEPEST * min(solid.scale, parts.scale.length))
+    return given
+
+
+def _shift_of(parts: Question, skin: Skin, sector: Sector, *, lies: bool) -> list[Support]:
+    """What may be shifted as a whole; on a plane, where every place is as good, nothing."""
     free = "".join(axis for axis in "xy" if axis not in sector.mirrored)
+    if not free or isinstance(parts.substrate, Plane):
+        return []
     # contact lines lie in the part of the membrane that takes no part in shifts
-    above = 0.0 if lies else 2.0 * largest_radius(local)
+    above = 0.0 if lies else 2.0 * largest_radius(parts.scale.local_solid(parts.substrate))
     if skin.ring is not None:
         # where the membrane meets point supports it moves vertically only
         above = float(skin.points[skin.directions[:, 2] == -1.0, 2].max())
-    # on a plane every place is as good, and the centroid is held
-    supports = [Shift(free, above)] if free and not isinstance(substrate, Plane) else []
-    law = parts.law
-    if penalized:
+    return [Shift(free, above)]
+
+
+def _law_of(parts: Question, skin: Skin, pattern: Pattern) -> Contact:
+    """How the skin is kept out of the solid: as asked, or as its mesh can."""
+    law, scale, length = parts.law, parts.scale, pattern.length
+    unit_law = scale.length**2 / scale.tension
+    if pattern.penalized:
         law = given_way(law, (skin.pressure + 2.0 / length) / length / unit_law)
     if skin.ring is not None:
         pressure = skin.pressure * scale.tension / scale.length
-        law = replace(law, ring=Ring(skin.ring * scale.length, pressure))
-    elif skin.many and pattern.repels and not penalized:
-        law = replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
-    foot = Foot(surface, sector, mesh, [law], supports, directions=skin.directions)
-    if least == 180.0:
-        return foot
-    if skin.ring is not None:
-        # from where they repel, no more asperities are met than pull the membrane down on others
-        return replace(foot, predictor=[replace(law, solid=with_angle(law.solid, 180.0))])
-    if attracts:
-        most = float(np.max(substrate.contact_angle))
-        if most > least:
-            raise SceneError(
-                f"substrate.contact_angle: {least:g} to {most:g} degrees: adhesion has one angle "
-                "for all spheres; give one, or smaller ones"
-            )
-        return replace(foot, terms=[replace(parts.law, adhesion=adhesion(parts.liquid, least))])
-    return _through(foot, parts, skin.pressure)
+        return replace(law, ring=Ring(skin.ring * scale.length, pressure))
+    if skin.many and pattern.repels and not pattern.penalized:
+        return replace(law, penalty=pattern.penalty(skin.pressure) / unit_law)
+    return law
+
+
+def _attracting(foot: Foot, parts: Question) -> Foot:
+    """A skin that lies on spheres which attract it."""
+    angles = parts.substrate.contact_angle
+    least, most = float(np.min(angles)), float(np.max(angles))
+    if most > least:
+        raise SceneError(
+            f"substrate.contact_angle: {least:g} to {most:g} degrees: adhesion has one angle "
+            "for all spheres; give one, or smaller ones"
+        )
+    return replace(foot, terms=[replace(parts.law, adhesion=adhesion(parts.liquid, least))])
 
 
 def given_way(law: Contact, traction: float) -> Contact:
