@@ -8,8 +8,6 @@ from dataclasses import replace
 from time import thread_time
 from typing import Literal
 
-import numpy as np
-
 from ..arguments import checked
 from ..assembly.lagrangian import Assembly
 from ..errors import SceneError, SolveError
@@ -17,15 +15,12 @@ from ..own import begin
 from ..problems.recipe import Recipe
 from ..problems.scene import Scene
 from ..problems.well_posed import check_held
-from ..solvers.free_edge import tangent_edge
-from ..solvers.load_stepping import LoadPath, LoadStep, load_stepping
-from ..solvers.newton import NewtonOptions, newton
 from ..solvers.options import SolverOptions
-from ..solvers.predictor import first, settings_of
-from ..solvers.quasi_static import quasi_static
+from ..solvers.predictor import settings_of
 from ..status import Status
 from ..terms.own import check_own_terms
 from ..threads import one_thread
+from .attempts import Run, strategy_of
 from .evaluate import Outcome, conclude
 from .free_particles import settled
 from .saddle import check_followed, followed
@@ -74,21 +69,38 @@ def solve(
     if options.follow_instability:
         check_followed(scene)
     check_held(scene)
-    started = thread_time()
+    solution = _solved(scene, options, report, thread_time())
+    log.debug("%s: %s", solution.status.name, solution.message)
+    solution = blamed(solution)
+    if not solution.success and on_fail == "raise":
+        raise SolveError(f"{solution.status.name}: {solution.message}", solution)
+    return solution
+
+
+def _solved(
+    scene: Scene, options: SolverOptions, report: Callable[[float], None], started: float
+) -> Solution:
+    """The equilibrium of a scene, by what the scene needs: its particles moved, another
+    discretization or a finer mesh behind it, a path that was asked for, or one state."""
     if scene.free_particles is not None:
-        return _delivered(_with_free_particles(scene, options, started), on_fail)
-    asked = scene.ramp is not None and scene.ramp.asked
-    if scene.otherwise is not None and not asked:
-        first = replace(scene, otherwise=None)
-        return _delivered(_either(first, scene.otherwise, FAILED, options, report), on_fail)
-    if scene.finer is not None and not asked:
-        first = replace(scene, finer=None)
-        coarse = frozenset({Status.UNDERRESOLVED})
-        return _delivered(_either(first, scene.finer, coarse, options, report), on_fail)
+        return _with_free_particles(scene, options, started)
+    if scene.ramp is not None and scene.ramp.asked:
+        _check_memory(scene, options)
+        return replace(walk(scene.ramp, options, report)[-1], scene=scene)
+    if scene.otherwise is not None:
+        one = replace(scene, otherwise=None)
+        return _either(one, scene.otherwise, FAILED, options, report)
+    if scene.finer is not None:
+        one = replace(scene, finer=None)
+        return _either(one, scene.finer, COARSE, options, report)
     _check_memory(scene, options)
-    if scene.ramp is not None and asked:
-        solution = walk(scene.ramp, options, report)[-1]
-        return _delivered(replace(solution, scene=scene), on_fail)
+    return _one_state(scene, options, report, started)
+
+
+def _one_state(
+    scene: Scene, options: SolverOptions, report: Callable[[float], None], started: float
+) -> Solution:
+    """The equilibrium of a scene with one discretization and fixed particles."""
     halfway = options.start is not None and _halfway(scene, options)
     if options.start is not None and not halfway:
         scene = replace(scene, surface=start_surface(options.start, scene), predictor=None)
@@ -98,25 +110,21 @@ def solve(
         raise SceneError(
             "discretization.elements: the mesh does not fit into memory; choose fewer elements"
         ) from error
-    settings = settings_of(scene, options, started)
-    if halfway:
-        path = _stepped(scene, assembly, settings, options, report)
-        outcome = Outcome(path.scene, path.result, path.steps, path.bracket, path.progress)
-    else:
-        outcome = _iterate(scene, assembly, settings, options, report)
+    run = Run(scene, assembly, settings_of(scene, options, started), options, report)
+    outcome = Outcome.of(run.stepped()) if halfway else strategy_of(scene)(run)
     assembly.load(outcome.scene)
     solution = conclude(outcome, assembly, options, started)
     if solution.status is Status.UNDERRESOLVED and len(outcome.steps) == 1 and scene.ramp:
         # a mesh may fake an equilibrium where there is none; the way to the scene tells
-        path = _stepped(scene, assembly, settings, options, report)
+        path = run.stepped()
         if path.bracket is not None:
             assembly.load(path.scene)
             steps = [*outcome.steps, *path.steps]
             outcome = Outcome(path.scene, path.result, steps, path.bracket)
             solution = conclude(outcome, assembly, options, started)
     if options.follow_instability and solution.status is Status.CONVERGED_SADDLE:
-        solution = followed(solution, outcome, assembly, settings, options, started)
-    return _delivered(replace(solution, scene=scene), on_fail)
+        solution = followed(solution, outcome, assembly, run.settings, options, started)
+    return replace(solution, scene=scene)
 
 
 DECIDED = frozenset(
@@ -126,6 +134,8 @@ DECIDED = frozenset(
     or status in (Status.NO_EQUILIBRIUM, Status.LIMIT_POINT, Status.TOPOLOGY_CHANGE)
 )
 """Ends of a solve that say something about the liquid, not about the discretization."""
+COARSE = frozenset({Status.UNDERRESOLVED})
+"""Ends after which a finer mesh is tried."""
 FAILED = frozenset(Status) - {Status.CONVERGED_STABLE, Status.INTERRUPTED, Status.UNVERIFIED}
 
 
@@ -182,29 +192,6 @@ def _halfway(scene: Scene, options: SolverOptions) -> bool:
     return scene.ramp is not None and journal_of(scene.ramp, options).start is not None
 
 
-def _stepped(
-    scene: Scene,
-    assembly: Assembly,
-    settings: NewtonOptions,
-    options: SolverOptions,
-    report: Callable[[float], None],
-) -> LoadPath:
-    """Load stepping along the scene's ramp, from where its journal says."""
-    assert scene.ramp is not None
-    journal = journal_of(scene.ramp, options)
-    return load_stepping(
-        scene.ramp, assembly, settings, options.min_load_step, report, journal=journal
-    )
-
-
-def _delivered(solution: Solution, on_fail: str) -> Solution:
-    log.debug("%s: %s", solution.status.name, solution.message)
-    solution = blamed(solution)
-    if not solution.success and on_fail == "raise":
-        raise SolveError(f"{solution.status.name}: {solution.message}", solution)
-    return solution
-
-
 WORTH_SAYING = 1e8
 """Bytes of memory from which a solve says what it needs."""
 
@@ -224,50 +211,3 @@ def _check_memory(scene: Scene, options: SolverOptions) -> None:
             f"solver.max_memory_gb = {options.max_memory_gb:g}: this mesh needs about "
             f"{need / 1e9:.1f} GB; raise the limit or choose fewer elements"
         )
-
-
-def _iterate(
-    scene: Scene,
-    assembly: Assembly,
-    settings: NewtonOptions,
-    options: SolverOptions,
-    report: Callable[[float], None],
-) -> Outcome:
-    """Direct Newton; load stepping where it failed or ended on a saddle; at last the nearest
-    equilibrium of any kind, to tell an unstable state from none."""
-    if scene.motion == "cartesian":
-        return Outcome(scene, *quasi_static(scene, assembly, settings, report))
-    if scene.free_edge is not None:
-        found, state = tangent_edge(scene, assembly, settings)
-        return Outcome(found, state, [LoadStep(1.0, len(state.iterations), state.status)])
-    if scene.ramp is not None and scene.ramp.only:
-        path = _stepped(scene, assembly, settings, options, report)
-        return Outcome(path.scene, path.result, path.steps, path.bracket, path.progress)
-    start, grading = scene.local_surface(), scene.meridian_grading
-    direct = first(scene, assembly, settings)
-    steps = [LoadStep(1.0, len(direct.iterations), direct.status)]
-    if direct.status is Status.INTERRUPTED or (direct.status is None and direct.index <= 0):
-        return Outcome(scene, direct, steps)
-    outcome = Outcome(scene, direct, steps)
-    if scene.ramp is not None:
-        log.info("direct solve failed (%s): load stepping", direct.message or "unstable")
-        path = _stepped(scene, assembly, settings, options, report)
-        path.result.linear_seconds += direct.linear_seconds
-        steps = steps + path.steps
-        if path.result.status is None:
-            return Outcome(path.scene, path.result, steps)
-        partial = path.last_good > 0 and (direct.status is not None or path.bracket is not None)
-        outcome = Outcome(scene, direct, steps, progress=path.progress)
-        if partial:
-            outcome = Outcome(path.scene, path.result, steps, path.bracket, path.progress)
-    own_start = not assembly.contact.lies and scene.predictor is None
-    if direct.status is not None and outcome.bracket is None and own_start:
-        assembly.load(scene)
-        nearest = newton(assembly, start, None, grading, replace(settings, near=np.inf))
-        steps = [*steps, LoadStep(1.0, len(nearest.iterations), nearest.status)]
-        if nearest.status is None:
-            return Outcome(scene, nearest, steps)
-        if nearest.status is Status.INTERRUPTED:
-            outcome.result.status, outcome.result.message = nearest.status, nearest.message
-        outcome = replace(outcome, steps=steps)
-    return outcome
