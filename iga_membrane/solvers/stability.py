@@ -69,6 +69,9 @@ SOLVED = 1e-4
 """Defect of the linear solves over the accuracy of an eigenvalue, which is good to its square."""
 ROUNDED = 32.0
 """Rounding of an eigenvalue over that of one number of the largest on the diagonal."""
+ALIKE = 1e-4
+"""Relative difference of eigenvalues that are the same by symmetry: those of a patch that is not
+quite round differ by its ripple, 1e-8 to 1e-6 on default meshes."""
 ROUGH, NEARLY = 0.05, 0.2
 """Accuracy of eigenvalues that are looked at only to see whether they are the smallest, and the
 margin by which they must not be."""
@@ -100,7 +103,7 @@ def stability_of(
     verdicts = [_verdict(state, blocks[0], neutral, np.inf)]
     verdicts += [_verdict(state, block, neutral, verdicts[0].smallest) for block in blocks[1:]]
     index = sum(b.parity.alike * v.index for b, v in zip(blocks, verdicts, strict=True))
-    worst = min(range(len(blocks)), key=lambda k: (not verdicts[k].index, verdicts[k].smallest))
+    worst = _worst(verdicts)
     block = blocks[worst]
     held_index = None
     if index and neutral.loose:
@@ -118,6 +121,16 @@ def stability_of(
         [text for block in blocks for text in neutral.pinned(block)],
         held_index,
     )
+
+
+def _worst(verdicts: Sequence[Eigenpair]) -> int:
+    """The number of the block with the softest motion: of those alike by symmetry, which blocks
+    share, the first one, whose motion the computed part may have itself."""
+    unstable = any(v.index for v in verdicts)
+    asked = [k for k, v in enumerate(verdicts) if bool(v.index) == unstable]
+    least = min(verdicts[k].smallest for k in asked)
+    alike = ALIKE * abs(least)
+    return next(k for k in asked if verdicts[k].smallest <= least + alike)
 
 
 def _factor(

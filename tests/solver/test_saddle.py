@@ -27,7 +27,7 @@ def swollen(model="half"):
 def between_spheres(apart=1.25):
     """A bridge between two spheres that holds less liquid round their gap than beside it."""
     pair = [iga.Sphere(90.0, 0.8, (0.0, 0.0, z)) for z in (-apart, apart)]
-    mesh = iga.Discretization(elements=8)
+    mesh = iga.Discretization(elements=8, model="half")
     return iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=pair, discretization=mesh)
 
 
@@ -39,6 +39,7 @@ def under_a_particle():
         gravity=1.0,
         particles=[iga.Sphere(90.0, 0.2, (0.0, 0.0, 1.3))],
         contact_line="conforming",
+        discretization=iga.Discretization(model="half"),
     )
 
 
