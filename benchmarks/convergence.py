@@ -35,9 +35,7 @@ def drop(mesh: iga.Discretization) -> iga.Scene:
 
 def drop_on_sphere(mesh: iga.Discretization) -> iga.Scene:
     ball = iga.Sphere(120.0, 1.0, (0.0, 0.0, -1.0))
-    return iga.sessile_droplet(
-        ball, volume=VOLUME, gravity=0.5, hold="xy", discretization=mesh
-    )
+    return iga.sessile_droplet(ball, volume=VOLUME, gravity=0.5, hold="xy", discretization=mesh)
 
 
 def sheet(mesh: iga.Discretization) -> iga.Scene:

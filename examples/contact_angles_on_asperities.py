@@ -29,9 +29,7 @@ def droplet(angle: float, radius: float = 0.05, elements: int | None = None) -> 
     asperities = iga.SphereLattice(contact_angle=angle, radius=radius, spacing=4.0 * radius)
     mesh = iga.Discretization(elements=elements)
     return iga.solve(
-        iga.sessile_droplet(
-            asperities, volume=VOLUME, gravity=1.0, hold="xy", discretization=mesh
-        )
+        iga.sessile_droplet(asperities, volume=VOLUME, gravity=1.0, hold="xy", discretization=mesh)
     )
 
 

@@ -23,9 +23,7 @@ def droplet(substrate: iga.Plane | iga.SphereLattice, elements: int | None = Non
     """The droplet of Bond number 1 on a substrate."""
     mesh = iga.Discretization(elements=elements)
     return iga.solve(
-        iga.sessile_droplet(
-            substrate, volume=VOLUME, gravity=1.0, hold="xy", discretization=mesh
-        )
+        iga.sessile_droplet(substrate, volume=VOLUME, gravity=1.0, hold="xy", discretization=mesh)
     )
 
 

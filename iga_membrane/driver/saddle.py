@@ -76,7 +76,7 @@ def followed(
     for _ in range(FALLS):
         if here.mode_beyond_model:
             message = (
-                f"{message}; not followed down, the \"{assembly.spines.model}\" model cannot take "
+                f'{message}; not followed down, the "{assembly.spines.model}" model cannot take '
                 f'that motion: take discretization.model = "{here.mode_within}"'
             )
             break

@@ -40,9 +40,7 @@ class Nearest:
     def part(self, some: Mask) -> Nearest:
         """At some of the points."""
         ridge = None if self.ridge is None else self.ridge[some]
-        return Nearest(
-            self.gap[some], self.normal[some], self.bend[some], self.which[some], ridge
-        )
+        return Nearest(self.gap[some], self.normal[some], self.bend[some], self.which[some], ridge)
 
     def hessian(self) -> Array:
         """(..., 3, 3) second derivative of the gap."""

@@ -15,9 +15,7 @@ from .nearest import Nearest, nearest_of_balls
 
 
 @dataclass(frozen=True)
-@checked(
-    "substrate", contact_angle=wet_angle, density="particle.density", motion="particle.motion"
-)
+@checked("substrate", contact_angle=wet_angle, density="particle.density", motion="particle.motion")
 class Sphere:
     """Solid ball.
 

@@ -466,9 +466,7 @@ def change_of(name):
     return Change(turn, shift, **units)
 
 
-@pytest.mark.parametrize(
-    "name", [*some(CHEAP, {0, 1, 3, 4, 6, 9, 10}), *some(DEAR, ())]
-)
+@pytest.mark.parametrize("name", [*some(CHEAP, {0, 1, 3, 4, 6, 9, 10}), *some(DEAR, ())])
 def test_a_changed_scene_has_the_changed_answer(name):
     check(name, change_of(name))
 

@@ -60,9 +60,7 @@ def test_contact_lines_converge_with_the_degree(degree, rate, last):
         assert third < last, name
 
 
-@pytest.mark.parametrize(
-    "place", some([((0.0, 0.0),), ((0.02, 0.0),), ((0.02, 0.01),)], {2})
-)
+@pytest.mark.parametrize("place", some([((0.0, 0.0),), ((0.02, 0.0),), ((0.02, 0.01),)], {2}))
 def test_a_square_cell_carries_its_pressure_and_converges(place):
     coarse, fine = (
         iga.solve(cell(150.0, 2.0, shape="square", place=place, elements=n)) for n in (24, 40)

@@ -150,9 +150,7 @@ def test_a_penalty_that_drowns_the_asperities_is_no_success():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("arrangement", "offset", "model", "wet"),
-    some(
-        [("hexagonal", (0.0, 0.0), "quarter", 55), ("square", (0.1, 0.1), "eighth", 52)], {0}
-    ),
+    some([("hexagonal", (0.0, 0.0), "quarter", 55), ("square", (0.1, 0.1), "eighth", 52)], {0}),
 )
 def test_other_lattices_take_the_model_of_their_mirror_planes(arrangement, offset, model, wet):
     solution = rough(arrangement, offset, elements=60)
