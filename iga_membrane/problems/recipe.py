@@ -11,6 +11,7 @@ import numpy as np
 
 from ..checks import choice, listed
 from ..errors import SceneError
+from ..fields import keys_of
 from ..lazy import part
 
 HOMES = {
@@ -79,9 +80,14 @@ class Recipe:
             return self.changed(gravity=_scaled(self.arguments["gravity"], value))
         if table in ("substrate", "particle", "discretization"):
             return self._at_record(path, table, which, name, index, value)
-        if name in self.arguments and which is None:
+        if name in self.arguments and which is None and table == self._table_of(name):
             return self.changed(**{name: _component(self.arguments[name], index, value, path)})
         return self._at_record(path, table, which, name, index, value)
+
+    def _table_of(self, name: str) -> str | None:
+        """The table of the scene file that an argument stands in."""
+        tables = (OWN.get(self.family, ""), "liquid", "solver")
+        return next((table for table in tables if name in keys_of(table)), None)
 
     def _at_record(
         self, path: str, table: str, which: str | None, name: str, index: int | None, value: float
@@ -102,13 +108,21 @@ class Recipe:
         return self.changed(**{owners[0]: several if listed(given) else several[0]})
 
     def _unknown(self, path: str) -> SceneError:
-        own = [name for name, given in self.arguments.items() if not is_dataclass(given)]
+        own = [f"{self._table_of(n)}.{n}" for n in self.arguments if self._table_of(n)]
         return SceneError(
             f"path = {path!r}: no number of this {self.family}; name one as in the scene file, "
-            f'like "substrate.contact_angle" or "particle[0].center[2]"; its arguments are '
+            f'like "substrate.contact_angle", "particle[0].center[2]", "gravity.acceleration" or '
             f"{', '.join(own)}"
         )
 
+
+OWN = {
+    "sessile_droplet": "droplet",
+    "liquid_sheet": "sheet",
+    "asperity_cell": "cell",
+    "film_between_rings": "rings",
+}
+"""The table of the scene file that a family has to itself."""
 
 TABLES = {"substrate": "sphere", "particle": "particle"}
 """Tables of the scene file, and the argument of a family that is theirs under another name."""

@@ -5,7 +5,7 @@ import pytest
 from helpers import some
 
 import iga_membrane as iga
-from iga_membrane.driver import evaluate as conclude
+from iga_membrane.driver import ending
 from iga_membrane.verification.self_intersection import crossing
 
 
@@ -49,7 +49,7 @@ def test_round_surfaces_do_not_cross(surface):
 def test_equilibrium_that_crosses_itself_is_no_success(monkeypatch):
     scene = iga.film_between_rings(half_height=0.4)
     assert iga.solve(scene).success
-    monkeypatch.setattr(conclude, "crossing", lambda surface: surface.points[0])
+    monkeypatch.setattr(ending, "crossing", lambda surface: surface.points[0])
     found = iga.solve(scene, on_fail="return")
     assert (found.status, found.kind) == (iga.Status.TOPOLOGY_CHANGE, "self-contact")
     assert "meets itself at (" in found.message

@@ -176,7 +176,8 @@ def test_gravity_of_another_size_keeps_its_direction():
 @pytest.mark.parametrize(
     "path",
     ["substrate", "substrate.nothing", "particle[0].radius", "sheet.pressure", "liquid.volume[1]",
-     "", "a.b.c", "substrate.normal[3]"],
+     "", "a.b.c", "substrate.normal[3]", "nonsense.volume", "sheet.volume", "droplet.volume",
+     "gravity.gravity[0]", "gravity.volume"],
 )  # fmt: skip
 def test_a_number_that_is_not_there_is_refused_by_its_path(path):
     with pytest.raises(iga.SceneError, match="path = "):
