@@ -25,9 +25,15 @@ class OutOfTime(Exception):
 @contextmanager
 def until(deadline: float) -> Iterator[None]:
     """Let :func:`check_time` stop what runs inside at a CPU time (``thread_time``), or before it
-    if an earlier one is set already."""
+    if an earlier one is set already; what begins later than that does not run.
+
+    Raises
+    ------
+    OutOfTime
+    """
     token = _DEADLINE.set(min(deadline, _DEADLINE.get()))
     try:
+        check_time()
         yield
     finally:
         _DEADLINE.reset(token)

@@ -157,6 +157,13 @@ def test_a_library_that_is_loaded_inside_is_held_and_given_back_too():
     assert (inside, outer, after) == ("[1, 1]", "[1, 1]", "[2, 2]")
 
 
+def test_nothing_begins_after_its_deadline():
+    began = []
+    with pytest.raises(OutOfTime), until(thread_time() - 1.0):
+        began.append(True)
+    assert not began
+
+
 def test_a_first_solve_of_a_process_keeps_only_its_own_thread_busy():
     """With a sparse matrix, for which scipy's BLAS is loaded midway: as any BLAS does, whatever it
     is loaded for, it starts its threads, and they wait actively for a time before they sleep."""

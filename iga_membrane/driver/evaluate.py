@@ -226,4 +226,8 @@ def _warnings(
             "cassie_baxter_angle is null: the wet spots are so curved that the cosine of the "
             "formula of Cassie and Baxter leaves [-1, 1]"
         )
+    if "apparent_angle" in found and found["apparent_angle"] is None:
+        texts.append(
+            "apparent_angle is null: a profile under the pressure at the apex does not come down"
+        )
     return tuple(texts)

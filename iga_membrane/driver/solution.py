@@ -143,7 +143,7 @@ class Solution:
         found = {"bond_number": weight * length**2 / gamma}
         if scene.kind == "sessile_droplet":
             for name in ("contact_angle_measured", "apparent_angle"):
-                if name in self.measures:
+                if self.measures.get(name) is not None:
                     found["apparent_angle"] = self.measures[name]
             if self.contact.get("wet_fraction") is not None:
                 found["wetted_fraction"] = float(self.contact["wet_fraction"])

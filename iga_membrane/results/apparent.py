@@ -7,8 +7,11 @@ import numpy as np
 from ..arrays import Array
 from ..terms import BodyDensity
 
+LEVEL = 1e-9
+"""Slope angle (radians) of a profile that has come to lie level, far below any that can be seen."""
 
-def apparent_angle(height: float, body: BodyDensity, tension: float) -> float:
+
+def apparent_angle(height: float, body: BodyDensity, tension: float) -> float | None:
     """Angle of the axisymmetric Young-Laplace profile from the apex where it meets z = 0.
 
     Parameters
@@ -18,19 +21,23 @@ def apparent_angle(height: float, body: BodyDensity, tension: float) -> float:
 
     Returns
     -------
-    degrees; 180 where the profile closes above z = 0.
+    degrees; 180 where the profile closes above z = 0, None where it does not come down: under a
+    negative pressure at the apex, or where one that hangs turns up again.
 
     Notes
     -----
     What a goniometer sees: the profile knows the pressure and the height of the droplet, not its
     asperities.
     """
-    return float(np.degrees(min(profile(height, body, tension)[2, -1], np.pi)))
+    if body.constant + body.gradient[2] * height >= 0.0:
+        return None
+    turn = profile(height, body, tension)[2, -1]
+    return float(np.degrees(min(turn, np.pi))) if turn > LEVEL else None
 
 
 def profile(height: float, body: BodyDensity, tension: float) -> Array:
     """(3, points) distance from the axis, height and slope angle (radians) of that profile, from
-    the apex down to z = 0 or to where it closes."""
+    the apex down to z = 0, or to where it closes or comes to lie level."""
     from scipy.integrate import solve_ivp  # a third of a small solve's process: only where needed
 
     def slope(s: float, state: tuple[float, float, float]) -> list[float]:
@@ -45,13 +52,17 @@ def profile(height: float, body: BodyDensity, tension: float) -> Array:
     def closed(s: float, state: tuple[float, float, float]) -> float:
         return np.pi - state[2]
 
-    for event in (ground, closed):
+    def level(s: float, state: tuple[float, float, float]) -> float:
+        return state[2] - 0.5 * LEVEL
+
+    events = ground, closed, level
+    for event in events:
         event.terminal = True  # type: ignore[attr-defined]
     start = 1e-6 * height
     turn = -0.5 * start * (body.constant + body.gradient[2] * height) / tension
     return solve_ivp(
         slope, (start, 20.0 * height + 20.0), [start, height, turn],
-        events=(ground, closed), rtol=1e-9, atol=1e-12,
+        method="DOP853", events=events, rtol=1e-9, atol=1e-12,
     ).y  # fmt: skip
 
 

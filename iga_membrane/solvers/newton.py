@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..assembly.lagrangian import Assembly, System
-from ..deadline import OutOfTime, check_time, until
+from ..deadline import OutOfTime, until
 from ..dofs.spines import Motion
 from ..errors import GeometryError
 from ..linalg.inverse_root import SingularMatrix
@@ -128,7 +128,7 @@ def newton(
     result = NewtonResult(surface, np.zeros(count) if multipliers is None else multipliers)
     try:
         with until(options.deadline):
-            _begin(assembly, surface)
+            assembly.contact.begin(surface)
             if multipliers is None and count:
                 result.multipliers = _best_balance(assembly, surface)
             _iterate(assembly, result, grading, options)
@@ -147,12 +147,6 @@ def newton(
     if result.best is not None:
         _, result.surface, result.multipliers = result.best
     return result
-
-
-def _begin(assembly: Assembly, surface: Surface) -> None:
-    """Find what is in contact at the start."""
-    check_time()
-    assembly.contact.begin(surface)
 
 
 def _iterate(

@@ -327,7 +327,7 @@ QUICK = ("droplet", "cap", "contact area", "tilted", "held", "sphere", "film",
 """Kinds of which no scene takes more than some seconds."""
 
 
-@pytest.mark.parametrize(("kinds", "least"), some([(QUICK[::2], 7), (QUICK[1::2], 7)], {1}))
+@pytest.mark.parametrize(("kinds", "least"), some([(QUICK[::2], 15), (QUICK[1::2], 7)], {1}))
 def test_extreme_scenes_are_solved_or_named(kinds, least):
     """Z, a small sample; ``benchmarks/reliability.py`` runs three hundred."""
     ends = [

@@ -12,7 +12,9 @@ from scipy.spatial.transform import Rotation
 import iga_membrane as iga
 from iga_membrane.driver.lines import contact_lines
 from iga_membrane.driver.result_file import result
+from iga_membrane.results.apparent import apparent_angle
 from iga_membrane.results.farthest import highest
+from iga_membrane.terms import BodyDensity
 
 VOLUME = 4.0 * np.pi / 3.0
 
@@ -476,6 +478,16 @@ def test_a_free_droplet_moves_with_its_particle():
     name = "hanging from a particle"
     check(name, Change(shift=np.array([0.0, 0.0, 5.0])))
     assert asked(name).measures["height"] < 0.0
+
+
+@pytest.mark.parametrize(("push", "weight"), [(-1.0, 1.0), (0.0, 0.0), (0.1, -2.0), (-5.0, -2.0)])
+def test_the_apparent_angle_is_null_where_no_profile_comes_down(push, weight):
+    """A negative pressure at the apex bends it up; of a droplet that hangs it may turn up again."""
+    height = 1.0
+    lost = BodyDensity(-push - weight * height, (0.0, 0.0, weight))
+    assert apparent_angle(height, lost, 1.0) is None
+    falling = BodyDensity(-5.0 - weight * height, (0.0, 0.0, weight))
+    assert 0.0 < apparent_angle(height, falling, 1.0) <= 180.0
 
 
 def test_cassies_angle_is_null_where_its_cosine_is_none():

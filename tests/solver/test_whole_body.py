@@ -13,6 +13,7 @@ import iga_membrane as iga
 from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.dofs.boundary_conditions import Sector
 from iga_membrane.initial.liquid import MODELS
+from iga_membrane.solvers.neutral import neutral_motions
 from iga_membrane.solvers.newton import NewtonOptions, newton
 from iga_membrane.solvers.second_variation import SecondVariation
 
@@ -50,6 +51,21 @@ def test_a_film_that_no_volume_makes_stable_is_not_followed_to_none():
     tried = sorted(step.load for step in found.load_steps)
     assert 0.0 < tried[1] < 2.0 * iga.SolverOptions().min_load_step
     assert tried[1] > 0.25 * iga.SolverOptions().min_load_step
+
+
+@pytest.mark.parametrize("degree", [2, 3])
+@pytest.mark.parametrize("elements", [6, 9, None])
+@pytest.mark.parametrize(("ellipse", "turns"), [(0.0, 1), (0.01, 0)])
+def test_rims_let_liquid_turn_if_they_are_round(ellipse, turns, elements, degree):
+    """Of spline rings, which are not quite round, and of ellipses that differ by a hundredth."""
+    space = iga.Discretization(elements=elements, degree=degree, model="full")
+    scene = iga.film_between_rings(half_height=0.5, volume=4.0, discretization=space)
+    local = scene.local_surface()
+    surface = local.moved(local.points * [1.0 + ellipse, 1.0, 1.0])
+    found = neutral_motions(scene, Assembly(scene), surface, np.array([4.0, 0.0, 0.0, 0.0]), "")
+    assert len(found) == turns
+    for motion in found:
+        assert np.abs(motion / motion[5]) == pytest.approx([0, 0, 0, 0, 0, 1], abs=1e-3)
 
 
 def test_the_verdict_within_a_model_is_asked_for():
