@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import importlib.util
 import json
 import sys
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from time import thread_time
 
 import numpy as np
 import pytest
@@ -27,6 +30,22 @@ def example(name):
     sys.modules[name] = module  # where dataclasses look for their annotations
     spec.loader.exec_module(module)
     return module
+
+
+@contextmanager
+def within(seconds):
+    """At most these CPU seconds of the thread. To collect what other tests have left can take
+    longer than what is timed: it waits."""
+    collecting = gc.isenabled()
+    gc.disable()
+    began = thread_time()
+    try:
+        yield
+    finally:
+        spent = thread_time() - began
+        if collecting:
+            gc.enable()
+        assert spent <= seconds
 
 
 def some(members, quick):

@@ -3,12 +3,11 @@ objects in Python; paths, options and nets (I3, I4, I7, I9-I11, I14-I18, X5, X7)
 
 import contextlib
 import json
-import time
 import tomllib
 
 import numpy as np
 import pytest
-from helpers import droplet
+from helpers import droplet, within
 
 import iga_membrane as iga
 from iga_membrane.checks import wet_angle
@@ -125,15 +124,8 @@ def _imported():
 
 def refused(read, table, key, value):
     """Before any assembly, within 50 ms, by the field's path, the value and what is allowed."""
-    seconds = np.inf
-    for _ in range(3):  # a collection of garbage may come between
-        before = time.process_time()
-        with pytest.raises(iga.SceneError) as caught:
-            read()
-        seconds = min(seconds, time.process_time() - before)
-        if seconds <= 0.05:
-            break
-    assert seconds <= 0.05
+    with within(0.05), pytest.raises(iga.SceneError) as caught:
+        read()
     said = str(caught.value)
     assert label(table, key) in said
     assert any(word in said for word in ("must ", "needed", "needs", "not available", "the same"))
@@ -264,11 +256,9 @@ PLANE = iga.Plane(contact_angle=90)
     ],
 )  # fmt: skip
 def test_wrong_objects_and_values_in_python_are_named(make, said):
-    before = time.process_time()
-    with pytest.raises(iga.SceneError) as caught:
+    with within(1.5), pytest.raises(iga.SceneError) as caught:
         make()
     assert said in str(caught.value)
-    assert time.process_time() - before < 1.5
 
 
 @pytest.mark.parametrize("kind", ["sessile_droplet", "liquid_sheet", "asperity_cell", "film"])
@@ -328,12 +318,10 @@ def test_a_far_asperity_and_many_are_no_burden():
     assert one.measures["energy"] == pytest.approx(two.measures["energy"], rel=1e-9)
     many = np.zeros((100_000, 3))
     many[:, 0] = 3.0 * np.arange(100_000)
-    before = time.process_time()
-    spheres = iga.Spheres(180, many, 1.0)
-    assert spheres.nearest(np.array([[2.9e5, 0.0, 2.0]])).gap == pytest.approx(
-        np.hypot(1.0, 2.0) - 1.0
-    )
-    assert time.process_time() - before < 2.0
+    with within(2.0):
+        spheres = iga.Spheres(180, many, 1.0)
+        gap = spheres.nearest(np.array([[2.9e5, 0.0, 2.0]])).gap
+    assert gap == pytest.approx(np.hypot(1.0, 2.0) - 1.0)
     with pytest.raises(iga.SceneError, match="at most 1000000"):
         iga.Spheres(180, np.zeros((1_000_001, 3)), 1.0)
 
@@ -362,8 +350,6 @@ def test_mutated_scene_files_give_typed_errors_or_scenes_and_quickly(tmp_path, t
                 case 3:
                     data[start:start] = data[: end - start]
         path.write_bytes(data)
-        before = time.process_time()
-        with contextlib.suppress(iga.SceneError, iga.GeometryError):
+        with within(1.0), contextlib.suppress(iga.SceneError, iga.GeometryError):
             read += isinstance(iga.load_scene(path).scene, iga.Scene)
-        assert time.process_time() - before < 1.0, data
     assert read

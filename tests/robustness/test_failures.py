@@ -8,7 +8,16 @@ import time
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME, droplet, droplet_file, particle_sheet, path_file, pinned_cap, some
+from helpers import (
+    UNIT_VOLUME,
+    droplet,
+    droplet_file,
+    particle_sheet,
+    path_file,
+    pinned_cap,
+    some,
+    within,
+)
 from robustness.contract import check_contract, finite, unheld_droplet
 
 import iga_membrane as iga
@@ -194,14 +203,12 @@ def test_the_cpu_limit_is_kept():
     """N13: at most a fifth beyond, and the best state comes back."""
     scene = droplet(178, 200.0, elements=40, degree=4, model="half")
     iga.solve(scene, iga.SolverOptions(max_cpu_s=0.1), on_fail="return")  # compiled
-    started = time.process_time()
-    solution = iga.solve(scene, iga.SolverOptions(max_cpu_s=0.5), on_fail="return")
-    spent = time.process_time() - started
+    with within(1.2 * 0.5 + 0.5):  # and what the parts of a result cost
+        solution = iga.solve(scene, iga.SolverOptions(max_cpu_s=0.5), on_fail="return")
     assert solution.status is iga.Status.INTERRUPTED
     check_contract(solution)
     assert "max_cpu_s" in solution.message
     assert solution.volume_error is not None
-    assert spent <= 1.2 * 0.5 + 0.5  # and what the parts of a result cost
 
 
 def test_an_interrupted_solve_is_judged_in_the_time_that_is_left(monkeypatch):
@@ -253,12 +260,10 @@ def test_the_cpu_limit_is_kept_on_fine_asperities(name):
     lattice = iga.SphereLattice(angle, radius=0.05, spacing=0.2)
     scene = iga.sessile_droplet(lattice, volume=UNIT_VOLUME, gravity=20.0, discretization=mesh)
     iga.solve(scene, iga.SolverOptions(max_cpu_s=0.1), on_fail="return")  # compiled
-    began = time.process_time()
-    solution = iga.solve(scene, iga.SolverOptions(max_cpu_s=limit), on_fail="return")
-    spent = time.process_time() - began
-    print(f"{name}, {limit:g} s: {spent:.2f}, {solution.status.name}, {solution.unknowns} unknowns")
+    with within(1.2 * limit):
+        solution = iga.solve(scene, iga.SolverOptions(max_cpu_s=limit), on_fail="return")
+    print(f"{name}, {limit:g} s: {solution.status.name}, {solution.unknowns} unknowns")
     assert solution.status is iga.Status.INTERRUPTED
-    assert spent <= 1.2 * limit
 
 
 def test_too_little_memory_is_named(monkeypatch):

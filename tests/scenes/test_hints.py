@@ -2,10 +2,10 @@
 hard to believe are a warning that says what they would mean."""
 
 import re
-import time
 
 import numpy as np
 import pytest
+from helpers import within
 
 import iga_membrane as iga
 
@@ -49,10 +49,8 @@ def droplet(substrate=PLANE, *, volume=1.0, tension=1.0, density=1.0, gravity=0.
     ],
 )  # fmt: skip
 def test_numbers_that_leave_double_precision_are_refused_at_once(make, names):
-    before = time.process_time()
-    with pytest.raises(iga.SceneError) as caught:
+    with within(0.5), pytest.raises(iga.SceneError) as caught:
         make()
-    assert time.process_time() - before < 0.5
     for name in names:
         assert name in str(caught.value)
 
