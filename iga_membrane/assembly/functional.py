@@ -11,7 +11,7 @@ from ..arrays import Array, Mask
 from ..contact.binding import model_of
 from ..contact.edge_lines import EdgeLines
 from ..deadline import check_time
-from ..dofs.boundary_conditions import Sliding, Support
+from ..dofs.boundary_conditions import Supports
 from ..dofs.cartesian import Cartesian
 from ..dofs.dof_map import Rows
 from ..dofs.spines import Motion, Spines
@@ -19,7 +19,7 @@ from ..dofs.symmetry import sector_table
 from ..problems.scene import Scene
 from ..splines import Table
 from ..surface.surface import Surface
-from ..terms import AreaTerm, BodyDensity, BodyTerm, Constraint, LocalGap, Stabilization, gap
+from ..terms import BodyDensity, Stabilization, gap
 from ..terms import variations as vary
 from .stabilizer import Stabilizer, Unstabilized
 
@@ -67,7 +67,7 @@ class Functional:
         space, sector = surface.space, scene.sector
         self.copies = sector.copies
         self._mirrored = [axis in sector.mirrored for axis in "xyz"]
-        self._supports: tuple[Support, ...] = scene.local_supports()
+        self._supports = scene.local_supports()
         self.spines = _motion(scene, surface, self._supports)
         self.size = self.spines.size
         ring = space.bases[0]
@@ -81,7 +81,7 @@ class Functional:
         self.contact = model_of(scene, surface, self.points, self.rows)
         self.stabilizer = Unstabilized()
         self._kept: Motion | None = None
-        self.above_plane = any(isinstance(s, Sliding) and s.solid is None for s in scene.supports)
+        self.above_plane = bool(scene.by_kind.on_plane)
         self.load(scene)
 
     def motion(self, surface: Surface) -> Motion:
@@ -106,12 +106,10 @@ class Functional:
             self._supports = supports
             self.spines = _motion(scene, scene.local_surface(), supports)
             self.rows = Rows(self.spines, self.table)
-        self.constraints = [t for t in terms if isinstance(t, Constraint)]
-        self.tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
-        self.gaps = [t for t in terms if isinstance(t, LocalGap)]
-        self._bodies = [
-            t.density() for t in terms if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
-        ]
+        self.constraints = terms.constraints
+        self.tension = terms.tension
+        self.gaps = terms.gaps
+        self._bodies = [term.density() for term in terms.bodies]
         self.held = [t.density() for t in self.constraints]
         self._targets = np.array([t.target for t in self.constraints]) / self.copies
         self.edges = EdgeLines(scene, self._space, self.points[0], self._ring, self.rows)
@@ -234,7 +232,7 @@ class Functional:
         return total
 
 
-def _motion(scene: Scene, surface: Surface, supports: tuple[Support, ...]) -> Spines:
+def _motion(scene: Scene, surface: Surface, supports: Supports) -> Spines:
     """The motion that a scene asks for."""
     if scene.motion == "cartesian":
         return Cartesian(surface, supports)

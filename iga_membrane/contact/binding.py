@@ -9,7 +9,7 @@ from ..dofs.symmetry import mirrors, sector_elements, sector_table
 from ..problems.scene import Scene
 from ..solids import SphereLattice, Spheres
 from ..surface.surface import Surface
-from ..terms import AreaTerm, Contact, TrimmedContactLine
+from ..terms import Contact, TrimmedContactLine
 from ..terms.variations import element_points
 from .covering import Covering
 from .laws import law_of, line_of
@@ -42,7 +42,7 @@ def _lying(
 ) -> Obstacle:
     elements, _ = sector_elements(surface.space, scene.sector)
     if law.ring is not None and isinstance(law.solid, (SphereLattice, Spheres)):
-        tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
+        tension = scene.local_terms().tension
         return PointSupports(scene, law, law.solid, law.ring, surface, tension, elements, rows)
     points = (1, 1) if law.penalty is None else points
     table = sector_table(surface.space, scene.sector, points)

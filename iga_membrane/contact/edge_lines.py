@@ -7,12 +7,11 @@ from copy import copy
 import numpy as np
 
 from ..arrays import Array, Index
-from ..dofs.boundary_conditions import Sliding
 from ..dofs.dof_map import FirstOrder, Rows
 from ..linalg.bordered import Matrix
 from ..problems.scene import Scene
 from ..splines import EdgeTable, Space
-from ..terms import BodyDensity, LineTerm, WettingLine
+from ..terms import BodyDensity
 from ..terms.edge_gap import EdgeGap
 
 
@@ -28,7 +27,8 @@ class EdgeLines:
 
     Attributes
     ----------
-    lines : line terms, each with the functions of its edge; wetted : those of contact lines.
+    lines : line terms, each with the functions of its edge; wetted : those of contact lines;
+        on_spheres : those of them on spheres.
     gaps : gaps to curved solids, each with the functions of its edge.
     """
 
@@ -37,13 +37,11 @@ class EdgeLines:
             return space.edge_table(name, points, ring)
 
         self._rows = rows
-        self.lines = [(t, edge(t.edge)) for t in scene.local_terms() if isinstance(t, LineTerm)]
-        self.wetted = [(t, edge) for t, edge in self.lines if isinstance(t, WettingLine)]
-        self.gaps = [
-            (EdgeGap(s.solid, s.edge), edge(s.edge))
-            for s in scene.local_supports()
-            if isinstance(s, Sliding) and s.solid is not None
-        ]
+        terms, on_spheres = scene.local_terms(), scene.local_supports().on_spheres
+        self.lines = [(term, edge(term.edge)) for term in terms.lines]
+        self.wetted = [(term, edge(term.edge)) for term in terms.wetting]
+        self.on_spheres = [(term, edge(term.edge)) for term in terms.on_spheres]
+        self.gaps = [(EdgeGap(sphere, name), edge(name)) for name, sphere in on_spheres]
 
     def by(self, rows: Rows) -> EdgeLines:
         """The same by the unknowns of other rows."""

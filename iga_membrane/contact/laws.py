@@ -10,12 +10,12 @@ from ..terms import Contact, TrimmedContactLine
 
 def law_of(scene: Scene) -> Contact | None:
     """The scene's law of contact, in its own scale."""
-    return next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
+    return scene.local_terms().obstacle
 
 
 def line_of(scene: Scene) -> TrimmedContactLine | None:
     """The scene's contact line inside the membrane, in its own scale."""
-    return next((t for t in scene.local_terms() if isinstance(t, TrimmedContactLine)), None)
+    return scene.local_terms().unfitted
 
 
 def same_law(one: Contact, other: Contact) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, Protocol
 
@@ -20,6 +21,12 @@ def _reach(field: str, value: Any) -> float:
 
 Model = Literal["full", "half", "quarter", "eighth"]
 """How much of a patch is computed."""
+
+
+class Frame(Protocol):
+    """Units and axes of a scene, as supports need them (:class:`..terms.Scale`)."""
+
+    def local_sphere(self, sphere: Sphere) -> Sphere: ...
 
 
 class Restrictable(Protocol):
@@ -51,6 +58,11 @@ class Fixed:
     """
 
     edge: str
+    kind = "fixed"
+
+    def scaled(self, scale: Frame) -> Fixed:
+        """In the units of a scale."""
+        return self
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -73,6 +85,11 @@ class Sliding:
     edge: str = "xi2=0"
     solid: Sphere | None = None
     reach: float = float("inf")
+    kind = "sliding"
+
+    def scaled(self, scale: Frame) -> Sliding:
+        """In the units of a scale."""
+        return self if self.solid is None else replace(self, solid=scale.local_sphere(self.solid))
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -97,6 +114,11 @@ class Symmetry:
     """
 
     axis: Literal["x", "y", "z"]
+    kind = "mirrors"
+
+    def scaled(self, scale: Frame) -> Symmetry:
+        """In the units of a scale."""
+        return self
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -114,6 +136,11 @@ class Mirror:
     """
 
     edge: str
+    kind = "walls"
+
+    def scaled(self, scale: Frame) -> Mirror:
+        """In the units of a scale."""
+        return self
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -131,6 +158,11 @@ class Joint:
     """
 
     edges: tuple[str, str] = ("xi1=0", "xi1=1")
+    kind = "joints"
+
+    def scaled(self, scale: Frame) -> Joint:
+        """In the units of a scale."""
+        return self
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -151,6 +183,11 @@ class Sector:
     """
 
     model: Model = "full"
+    kind = "sectors"
+
+    def scaled(self, scale: Frame) -> Sector:
+        """In the units of a scale."""
+        return self
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -184,6 +221,11 @@ class Shift:
 
     axes: str
     above: float = 0.0
+    kind = "shifts"
+
+    def scaled(self, scale: Frame) -> Shift:
+        """In the units of a scale."""
+        return self
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -191,3 +233,48 @@ class Shift:
 
 
 Support = Fixed | Sliding | Symmetry | Mirror | Joint | Sector | Shift
+
+
+class Supports(tuple[Support, ...]):
+    """How a membrane is held, in its order and by kind.
+
+    Attributes
+    ----------
+    fixed, sliding, mirrors, walls, joints, sectors, shifts : supports of each kind.
+    """
+
+    fixed: list[Fixed]
+    sliding: list[Sliding]
+    mirrors: list[Symmetry]
+    walls: list[Mirror]
+    joints: list[Joint]
+    sectors: list[Sector]
+    shifts: list[Shift]
+
+    def __new__(cls, supports: Iterable[Support] = ()) -> Supports:
+        self = super().__new__(cls, supports)
+        for kind in cls.__annotations__:
+            setattr(self, kind, [])
+        for support in self:
+            getattr(self, support.kind).append(support)
+        return self
+
+    @property
+    def sector(self) -> Sector:
+        """The part of a closed patch that is computed."""
+        return next(iter(self.sectors), Sector())
+
+    @property
+    def held(self) -> list[str]:
+        """Edges that are fixed or slide on a solid."""
+        return [s.edge for s in self.fixed] + [s.edge for s in self.sliding]
+
+    @property
+    def on_spheres(self) -> list[tuple[str, Sphere]]:
+        """Edges that slide on spheres, with these."""
+        return [(s.edge, s.solid) for s in self.sliding if s.solid is not None]
+
+    @property
+    def on_plane(self) -> list[str]:
+        """Edges that slide on the plane z = 0."""
+        return [s.edge for s in self.sliding if s.solid is None]

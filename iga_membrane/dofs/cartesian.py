@@ -6,6 +6,7 @@ tangents, so this motion needs a stabilization; it is the paper's, kept to be me
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..arrays import Array
 from ..errors import SceneError
 from ..splines import net_of
 from ..surface.surface import Surface
-from .boundary_conditions import Sector, Sliding, Support
+from .boundary_conditions import Support, Supports
 from .spines import Block, Motion, Spines, _points_of_field, along_net
 
 
@@ -27,12 +28,13 @@ class Cartesian(Spines):
 
     by_pairs = True
 
-    def __init__(self, surface: Surface, supports: tuple[Support, ...] = ()) -> None:
+    def __init__(self, surface: Surface, supports: Sequence[Support] = ()) -> None:
         super().__init__(surface, supports)
         space = surface.space
         ring = space.bases[0]
-        copies = next((s.copies for s in supports if isinstance(s, Sector)), 1)
-        if any(isinstance(s, Sliding) for s in supports) or (copies > 1 and not ring.periodic):
+        kinds = Supports(supports)
+        copies = kinds.sector.copies
+        if kinds.sliding or (copies > 1 and not ring.periodic):
             raise SceneError(
                 'solver.motion = "cartesian": needs a ring or a whole patch, any contact line '
                 "inside it"

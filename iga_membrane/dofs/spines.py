@@ -8,6 +8,7 @@ same table: points that share an unknown, points without one, directions in a pl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -129,7 +130,7 @@ class Spines:
     def __init__(
         self,
         surface: Surface,
-        supports: tuple[Support, ...] = (),
+        supports: Sequence[Support] = (),
         directions: Array | None = None,
     ) -> None:
         space = surface.space

@@ -15,16 +15,6 @@ from ..solvers.stability import Stability
 from ..status import Status
 from ..surface.inside import inside
 from ..surface.surface import Surface
-from ..terms import (
-    BodyTerm,
-    Constraint,
-    Contact,
-    LocalGap,
-    PlaneContactLine,
-    TrimmedContactLine,
-    Volume,
-    WettingLine,
-)
 from ..verification.evidence import TOLERANCE, Audit
 
 
@@ -81,7 +71,7 @@ def _way_out(scene: Scene, verdict: Stability) -> str:
 
 def _tolerated_depth(scene: Scene) -> float:
     """Depth in the solid over its contact length."""
-    law = next((t for t in scene.terms if isinstance(t, Contact)), None)
+    law = scene.by_form.obstacle
     if law is not None:
         return law.depth
     curved = sphere_of(scene) is not None
@@ -103,20 +93,10 @@ def rests_on_a_point(scene: Scene) -> tuple[Status, str, str] | None:
     """How a droplet ends that nothing presses onto solids that it does not wet at all, or None:
     it has no foot there, whatever the mesh makes of it."""
     terms = scene.local_terms()
-    solids = [t for t in terms if isinstance(t, (Contact, WettingLine, TrimmedContactLine))]
-    repel = all(
-        not t.adhesion
-        if isinstance(t, Contact)
-        else isinstance(t, PlaneContactLine) and not t.covered and t.strength >= t.gamma
-        for t in solids
-    )
-    pressed = any(
-        isinstance(t, LocalGap) or (isinstance(t, BodyTerm) and any(t.density().gradient))
-        for t in terms
-        if not isinstance(t, Constraint)
-    )
-    alone = any(isinstance(t, Volume) for t in terms) and not scene.particles
-    if not (solids and repel and alone) or pressed:
+    pressed = terms.gaps or any(any(t.density().gradient) for t in terms.bodies)
+    alone = terms.volumes and not scene.particles
+    meets = [t.repels for t in terms.obstacles] + [t.repels for t in terms.wetting]
+    if not (meets and all(meets) and alone) or terms.passed or pressed:
         return None
     return (
         Status.TOPOLOGY_CHANGE,
@@ -228,7 +208,7 @@ leave no room for a sheet."""
 def too_soft(scene: Scene, assembly: Assembly, multipliers: Array) -> tuple[Status, str] | None:
     """A penalty that cannot hold the membrane out of the spheres: it gives way by the traction
     ``p + 2 gamma / r`` over the penalty."""
-    law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
+    law = scene.local_terms().obstacle
     if law is None or law.penalty is None:
         return None
     length = assembly.contact.length
@@ -249,7 +229,7 @@ def overload(scene: Scene, assembly: Assembly, multipliers: Array) -> str:
     A sphere carries at most ``(p + 2 gamma / r) pi r^2``, with the membrane at its equator, and far
     from the droplet's rim it must carry the pressure on its cell of the lattice.
     """
-    law = next((t for t in scene.local_terms() if isinstance(t, Contact)), None)
+    law = scene.local_terms().obstacle
     if law is None or not isinstance(law.solid, SphereLattice):
         return ""
     disc = np.pi * law.solid.radius**2

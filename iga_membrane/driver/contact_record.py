@@ -16,7 +16,7 @@ from ..results.forces import pull_on_sphere, sphere_lines
 from ..results.measures import own_asperity
 from ..solids import SphereLattice, Spheres
 from ..solvers.newton import NewtonResult
-from ..terms import PlaneContactLine, Scale, SphereContactLine, WettingLine
+from ..terms import Scale
 from ..verification.audit import young_cosine
 from ..verification.evidence import Audit
 
@@ -33,11 +33,11 @@ def contact_record(
     contact = assembly.contact
     if contact.carries or (contact.passes and not assembly.edges.wetted):
         return _patches(scene, assembly, result, found, checked)
-    line = next((t for t in scene.local_terms() if isinstance(t, WettingLine)), None)
+    line = next(iter(scene.local_terms().wetting), None)
     if line is None:
         return {}
     unit, pulls = scale.length, []
-    if isinstance(line, PlaneContactLine):
+    if line.ball is None:
         body = assembly.density(result.multipliers)
         at = contact_line(surface, line.edge)
         cosine = np.clip(young_cosine(scene, surface, line, at), -1.0, 1.0)
@@ -53,11 +53,11 @@ def contact_record(
     wet = assembly.copies * assembly.edges.wet_areas(surface.points)[0] * scale.length**2
     rim = found.get("contact_radius", float(np.sqrt(max(wet, 0.0) / np.pi)))
     alone: dict[str, Any] = {}
-    if isinstance(line, SphereContactLine):
-        unit *= line.sphere.radius
+    if line.ball is not None:
+        unit *= line.ball.radius
         own = own_asperity(scene)
         if own is not None:
-            angle, center = found["contact_angle_measured"], np.array(line.sphere.center)
+            angle, center = found["contact_angle_measured"], np.array(line.ball.center)
             row = _row(scale, own, center, pulls[0], wet, angle)
             alone = {"law": "contact lines", "asperities": [row], "touches_base": False}
     return alone | {

@@ -25,7 +25,6 @@ from ..solvers.options import SolverOptions
 from ..solvers.stability import Stability, stability_of
 from ..status import Status
 from ..surface.surface import Surface
-from ..terms import Centroid, Volume
 from ..verification.audit import audit
 from ..verification.evidence import Audit
 from ..verification.trimmed_audit import trimmed_audit
@@ -179,7 +178,7 @@ def _audited(
 
 def _volume_error(scene: Scene, inside: float) -> float | None:
     """Relative error of a prescribed volume; None where none is."""
-    held = next((t for t in scene.local_terms() if isinstance(t, Volume)), None)
+    held = scene.local_terms().volume
     return abs(inside - held.target) / held.value if held else None
 
 
@@ -189,8 +188,7 @@ def _hold_force(
     """World vector of the force with which the centroid constraints act on the liquid."""
     local = np.zeros(3)
     for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
-        if isinstance(term, Centroid):
-            local["xyz".index(term.axis)] = multiplier * inside
+        local += multiplier * inside * np.array(term.density().gradient)
     x, y, z = (float(f) for f in scene.units.axes @ local * scene.units.force)
     return x, y, z
 
@@ -203,9 +201,10 @@ def _named(scene: Scene, assembly: Assembly, multipliers: Array) -> dict[str, fl
     lifted = -float(assembly.body.at(scale.to_local(np.zeros(3)))) + assembly.body.constant
     found = {}
     for term, multiplier in zip(assembly.constraints, multipliers, strict=False):
-        unit = scale.pressure / (scale.length if isinstance(term, Centroid) else 1.0)
-        moved = lifted if isinstance(term, Volume) else 0.0
-        found[term.name] = (float(multiplier) + moved) * unit
+        # per volume, or per volume and length
+        density = term.density()
+        unit = scale.pressure / (scale.length if any(density.gradient) else 1.0)
+        found[term.name] = (float(multiplier) + lifted * density.constant) * unit
     return found
 
 

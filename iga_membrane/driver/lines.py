@@ -15,7 +15,6 @@ from ..problems.scene import Scene
 from ..results.contact_line import ContactLine, contact_line, trimmed_line
 from ..results.measures import own_asperity
 from ..surface.surface import Surface
-from ..terms import PlaneContactLine, SphereContactLine, TrimmedContactLine
 from .solution import Solution
 
 
@@ -57,16 +56,15 @@ def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     scene = solution.scene
     surface = solution.surface.moved(scene.units.to_local(solution.surface.points))
     found = []
-    if any(isinstance(term, TrimmedContactLine) for term in scene.terms):
+    if scene.by_form.passed:
         found += _inside(scene, surface)
-    for term in scene.local_terms():
-        if isinstance(term, SphereContactLine):
-            line = contact_line(surface, term.edge, solid=term.sphere)
+    for term in scene.local_terms().wetting:
+        line = contact_line(surface, term.edge, solid=term.ball)
+        number = -1
+        if term.ball is not None:
             alone = own_asperity(scene)
             number = sum(each.solid >= 0 for each in found) if alone is None else alone
-            found.append(LineOnSolid(number, line))
-        elif isinstance(term, PlaneContactLine):
-            found.append(LineOnSolid(-1, contact_line(surface, term.edge)))
+        found.append(LineOnSolid(number, line))
     return tuple(LineOnSolid(each.solid, _world(scene, each.line)) for each in found)
 
 

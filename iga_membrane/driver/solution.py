@@ -24,7 +24,7 @@ from ..status import Status
 from ..surface.kinematics import Kinematics
 from ..surface.surface import Surface
 from ..tables import dataframe
-from ..terms import AreaTerm, BodyDensity, Gravity, SurfaceTension, Volume
+from ..terms import BodyDensity
 from ..verification.evidence import Audit
 
 
@@ -128,16 +128,13 @@ class Solution:
         ``wetted_fraction``, the wetted area over that of a disc of the contact radius.
         """
         scene = self.scene
-        weights = [
-            term.density_of_liquid * np.array(term.acceleration)
-            for term in scene.terms
-            if isinstance(term, Gravity)
-        ] or [scene.liquid_density * np.array(scene.acceleration)]
-        gamma = sum(t.gamma for t in scene.terms if isinstance(t, SurfaceTension))
+        terms = scene.by_form
+        weights = [t.density_of_liquid * np.array(t.acceleration) for t in terms.weights]
+        weights = weights or [scene.liquid_density * np.array(scene.acceleration)]
+        gamma = sum(t.gamma for t in terms.surface_tensions)
         weight, length = float(np.linalg.norm(np.sum(weights, axis=0))), scene.units.length
-        volume = next((term.value for term in scene.terms if isinstance(term, Volume)), None)
-        if scene.kind == "sessile_droplet" and volume is not None:
-            length = float(np.cbrt(3.0 * volume / (4.0 * np.pi)))
+        if scene.kind == "sessile_droplet" and terms.volume is not None:
+            length = float(np.cbrt(3.0 * terms.volume.value / (4.0 * np.pi)))
         elif scene.kind == "liquid_sheet" and isinstance(scene.substrate, Sphere):
             length = scene.substrate.radius
         found = {"bond_number": weight * length**2 / gamma}
@@ -193,7 +190,7 @@ class Solution:
     @property
     def _tension(self) -> float:
         """Energy per area of the membrane."""
-        return sum(t.tension() for t in self.scene.terms if isinstance(t, AreaTerm))
+        return self.scene.by_form.tension
 
     def summary(self) -> str:
         """Status, measures, effort, in a few lines."""

@@ -20,7 +20,6 @@ from ..solvers.options import SolverOptions
 from ..solvers.predictor import first, settings_of
 from ..status import Status
 from ..tables import column, dataframe, dataset
-from ..terms import Contact, TrimmedContactLine
 from ..terms.own import check_own_terms
 from ..threads import one_thread
 from .evaluate import Outcome, conclude
@@ -196,7 +195,7 @@ def walk(
 
 def _formulation(scene: Scene) -> frozenset[str]:
     """How the membrane meets its solid: an assembly has one of them."""
-    return frozenset(t.name for t in scene.terms if isinstance(t, (Contact, TrimmedContactLine)))
+    return frozenset(t.name for t in (*scene.by_form.obstacles, *scene.by_form.passed))
 
 
 def _each(

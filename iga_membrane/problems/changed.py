@@ -14,7 +14,7 @@ from typing import Any
 
 from ..checks import shown
 from ..errors import SceneError
-from ..terms import Gravity, LineTerm, Scale, Term
+from ..terms import Scale, Term
 from .posed import Posed
 
 ASKED = (
@@ -117,10 +117,10 @@ def _check(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> N
         raise SceneError(
             "scale: the frame of this scene is that of its solid; keep origin and rotation"
         )
-    lines = [[t for t in terms if isinstance(t, LineTerm)] for terms in
-             (scene.terms, before["terms"])]  # fmt: skip
-    if scene.free_edge is not None and not ({"space", "substrate"}.isdisjoint(changed)
-            and _same(*(tuple(each) for each in lines))):  # fmt: skip
+    lines = [tuple(terms.lines) for terms in (scene.by_form, before["terms"])]
+    if scene.free_edge is not None and not (
+        {"space", "substrate"}.isdisjoint(changed) and _same(*lines)
+    ):
         raise SceneError(
             f"{', '.join(changed)}: replaced where an edge at 180 degrees is looked for; build "
             "the scene anew"
@@ -129,10 +129,7 @@ def _check(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> N
 
 def _weight(scene: Posed, before: Mapping[str, Any]) -> dict[str, Any]:
     """Acceleration and density of the liquid, which follow the term of its weight."""
-    now, then = (
-        tuple(t for t in terms if isinstance(t, Gravity))
-        for terms in (scene.terms, before["terms"])
-    )
+    now, then = (tuple(terms.weights) for terms in (scene.by_form, before["terms"]))
     given = (scene.acceleration, scene.liquid_density)
     if _same(now, then) or given != (before["acceleration"], before["liquid_density"]):
         return {}

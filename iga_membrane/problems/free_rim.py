@@ -9,7 +9,6 @@ import numpy as np
 from ..arrays import Array
 from ..solids import Plane
 from ..surface.surface import Surface
-from ..terms import Volume
 from .recipe import Recipe
 from .scene import FreeEdge, Scene, TangentEdge
 from .smooth_foot import rim_radius, with_rim
@@ -37,7 +36,7 @@ class RimOnPlane(FreeEdge):
 
     def foretold(self, scene: Scene) -> Surface:
         asked = self.recipe.arguments
-        volume = next((t.value for t in scene.terms if isinstance(t, Volume)), asked["volume"])
+        volume = next((t.value for t in scene.by_form.volumes), asked["volume"])
         weight = tuple(scene.acceleration), scene.liquid_density
         own = tuple(asked["gravity"]), asked["liquid"].density
         if (volume, weight) == (asked["volume"], own) or not np.any(weight[0]):

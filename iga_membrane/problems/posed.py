@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from ..arrays import Array
-from ..dofs.boundary_conditions import Sector, Support
+from ..dofs.boundary_conditions import Sector, Support, Supports
 from ..surface.surface import Surface
-from ..terms import Scale, Term
+from ..terms import Scale, Term, Terms
 
 
 class Posed(Protocol):
@@ -50,4 +50,8 @@ class Posed(Protocol):
     def sector(self) -> Sector: ...
     @property
     def lateral_load(self) -> dict[str, float]: ...
-    def local_terms(self) -> tuple[Term, ...]: ...
+    @property
+    def by_form(self) -> Terms: ...
+    @property
+    def by_kind(self) -> Supports: ...
+    def local_terms(self) -> Terms: ...

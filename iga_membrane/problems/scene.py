@@ -5,29 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import array, listed, number, record, words
-from ..dofs.boundary_conditions import Fixed, Sector, Sliding, Support, Symmetry
+from ..dofs.boundary_conditions import Sector, Support, Supports
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
-from ..terms import (
-    BodyTerm,
-    Constraint,
-    Contact,
-    PlaneContactLine,
-    Scale,
-    SphereContactLine,
-    SurfaceTension,
-    Term,
-    TrimmedContactLine,
-)
+from ..terms import Scale, Term, Terms
 from ..terms.own import scaled_term
 from .changed import Origin, adapted, origin_of
 from .recipe import Recipe
@@ -233,14 +223,14 @@ class Scene:
     origin: Origin | None = field(default=None, repr=False, compare=False, metadata={"kept": False})
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "terms", tuple(self.terms))
-        object.__setattr__(self, "supports", tuple(self.supports))
+        object.__setattr__(self, "terms", Terms(self.terms))
+        object.__setattr__(self, "supports", Supports(self.supports))
         if self.origin is not None:
             for name, value in adapted(self, self.origin).items():
                 object.__setattr__(self, name, value)
         check_parts(self)
         if self.scale is None:
-            tension = next(t.gamma for t in self.terms if isinstance(t, SurfaceTension))
+            tension = self.by_form.surface_tensions[0].gamma
             object.__setattr__(self, "scale", Scale(self.surface.size, tension))
         check_mirrors(self)
         object.__setattr__(self, "origin", origin_of(self))
@@ -284,18 +274,13 @@ class Scene:
     @property
     def line_inside(self) -> str | None:
         """The line of a membrane that covers the wetted area too, where it leaves the solid."""
-        lines = (t for t in self.terms if isinstance(t, (PlaneContactLine, SphereContactLine)))
-        return next((t.edge for t in lines if t.covered), None)
+        return next((t.edge for t in self.by_form.wetting if t.covered), None)
 
     @property
     def lateral_load(self) -> dict[str, float]:
         """Body force per volume along the axes x and y of the frame, where there is any
         (dimensionless)."""
-        bodies = [
-            t.density().gradient
-            for t in self.local_terms()
-            if isinstance(t, BodyTerm) and not isinstance(t, Constraint)
-        ]
+        bodies = [t.density().gradient for t in self.local_terms().bodies]
         x, y, z = (sum(parts) for parts in zip(*bodies, strict=True)) if bodies else (0, 0, 0)
         noise = 1e-12 * (abs(x) + abs(y) + abs(z))
         return {axis: -pull for axis, pull in (("x", x), ("y", y)) if abs(pull) > noise}
@@ -303,10 +288,10 @@ class Scene:
     @property
     def loose_axes(self) -> str:
         """Axes along which the membrane is free to slide on a plane; particles hold it."""
-        ends_on_it = any(isinstance(s, Sliding) and s.solid is None for s in self.supports)
-        lies_on_it = any(isinstance(t, Contact) and isinstance(t.solid, Plane) for t in self.terms)
-        held = self.particles or any(isinstance(s, (Fixed, Symmetry)) for s in self.supports)
-        if held or not (ends_on_it or lies_on_it):
+        kinds = self.by_kind
+        lies_on_it = any(isinstance(t.solid, Plane) for t in self.by_form.obstacles)
+        held = self.particles or kinds.fixed or kinds.mirrors
+        if held or not (kinds.on_plane or lies_on_it):
             return ""
         return "".join(axis for axis in "xy" if axis not in self.sector.mirrored)
 
@@ -333,14 +318,14 @@ class Scene:
     def meridian_grading(self) -> Grading | None:
         """The grading of a ring patch; other patches, and membranes that lie on a solid, keep
         their parametrization."""
-        lying = any(isinstance(t, (Contact, TrimmedContactLine)) for t in self.terms)
+        lying = self.by_form.obstacles or self.by_form.passed
         regular = self.surface.space.bases[0].periodic and not lying
         return self.grading if regular else None
 
     @property
     def sector(self) -> Sector:
         """The part of a closed patch that is computed."""
-        return next((s for s in self.supports if isinstance(s, Sector)), Sector())
+        return self.by_kind.sector
 
     def local_surface(self) -> Surface:
         """The start in the scene's scale and frame; sliding edges exactly in z = 0.
@@ -351,27 +336,31 @@ class Scene:
             If a sliding edge lies off the plane.
         """
         points = self.units.to_local(self.surface.points)
-        for support in self.supports:
-            if isinstance(support, Sliding) and support.solid is None:
-                edge = self.surface.space.edge_functions(support.edge)
-                off = float(np.abs(points[edge, 2]).max())
-                if off > 1e-6:
-                    raise SceneError(
-                        f"surface: its sliding edge {support.edge} lies {off:g} lengths off the "
-                        "plane; start with the edge in the plane"
-                    )
-                points[edge, 2] = 0.0
+        for name in self.by_kind.on_plane:
+            edge = self.surface.space.edge_functions(name)
+            off = float(np.abs(points[edge, 2]).max())
+            if off > 1e-6:
+                raise SceneError(
+                    f"surface: its sliding edge {name} lies {off:g} lengths off the plane; start "
+                    "with the edge in the plane"
+                )
+            points[edge, 2] = 0.0
         return self.surface.moved(points)
 
-    def local_supports(self) -> tuple[Support, ...]:
-        """The supports in the scene's scale and frame."""
-        return tuple(
-            replace(s, solid=self.units.local_sphere(s.solid))
-            if isinstance(s, Sliding) and s.solid is not None
-            else s
-            for s in self.supports
-        )
+    @property
+    def by_form(self) -> Terms:
+        """The terms by their form, in the user's units."""
+        return cast(Terms, self.terms)
 
-    def local_terms(self) -> tuple[Term, ...]:
+    @property
+    def by_kind(self) -> Supports:
+        """The supports by their kind, in the user's units."""
+        return cast(Supports, self.supports)
+
+    def local_supports(self) -> Supports:
+        """The supports in the scene's scale and frame."""
+        return Supports(support.scaled(self.units) for support in self.supports)
+
+    def local_terms(self) -> Terms:
         """The terms in the scene's scale and frame."""
-        return tuple(scaled_term(term, self.units) for term in self.terms)
+        return Terms(scaled_term(term, self.units) for term in self.terms)

@@ -5,18 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..dofs.boundary_conditions import Fixed, Joint, Sliding, Symmetry
 from ..errors import SceneError
-from ..terms import (
-    Centroid,
-    GapTerm,
-    Gravity,
-    LineTerm,
-    LocalGap,
-    Stabilization,
-    TrimmedContactLine,
-    WettingLine,
-)
+from ..terms import LocalGap
 from .posed import Posed
 
 
@@ -59,12 +49,13 @@ def _check_names(scene: Posed) -> None:
 
 def _check_lines(scene: Posed) -> None:
     """Refuse lines that slide freely where they have no place."""
-    sliding = [s.edge for s in scene.supports if isinstance(s, Sliding)]
+    sliding = [support.edge for support in scene.by_kind.sliding]
+    held = [line for line in scene.by_form.wetting if line.edge not in sliding]
     for term in scene.terms:
-        slides = not isinstance(term, WettingLine) or term.edge in sliding
-        for solid in term.solids if slides else ():
+        for solid in () if term in held else term.solids:
             refuse_perfectly_wet(f'terms: "{term.name}"', solid)
-        if isinstance(term, WettingLine) and slides and term.strength >= term.gamma:
+    for line in scene.by_form.wetting:
+        if line not in held and line.strength >= line.gamma:
             raise SceneError(
                 "contact_angle = 180: a contact line that slides freely has no place at 180 "
                 "degrees, where the foot is a contact area; build the scene by "
@@ -82,7 +73,7 @@ def _check_directions(scene: Posed) -> None:
 
 
 def _check_motion(scene: Posed) -> None:
-    if (scene.motion == "cartesian") != any(isinstance(t, Stabilization) for t in scene.terms):
+    if (scene.motion == "cartesian") != bool(scene.by_form.stabilizations):
         raise SceneError(
             f'motion = "{scene.motion}": "cartesian" needs a Stabilization among the terms, '
             '"spines" none'
@@ -120,11 +111,11 @@ def refuse_perfectly_wet(field: str, solid: object) -> None:
 def check_mirrors(scene: Posed) -> None:
     """Refuse a model whose mirror planes the terms do not have."""
     model, mirrored = scene.sector.model, scene.sector.mirrored
-    for term in scene.terms:
-        if isinstance(term, Centroid) and term.axis in mirrored:
+    for centroid in scene.by_form.centroids:
+        if centroid.axis in mirrored:
             raise SceneError(
-                f'terms: the "{model}" model is symmetric in {term.axis}; a Centroid along '
-                f"{term.axis} holds nothing there: leave it out or take a larger model"
+                f'terms: the "{model}" model is symmetric in {centroid.axis}; a Centroid along '
+                f"{centroid.axis} holds nothing there: leave it out or take a larger model"
             )
     for axis in mirrored:
         if axis in scene.lateral_load:
@@ -134,12 +125,11 @@ def check_mirrors(scene: Posed) -> None:
                 "model here"
             )
     here = scene.units.to_local(scene.surface.points)
-    for term in scene.local_terms():
-        for k, axis in enumerate("xyz"):
-            if isinstance(term, LocalGap) and axis in mirrored:
-                there = here * np.where(np.arange(3) == k, -1.0, 1.0)
-                _check_mirror(scene, term, here, there, axis)
-        if isinstance(term, LocalGap) and model == "eighth":
+    for term in scene.local_terms().gaps:
+        for axis in mirrored:
+            there = here * np.where(np.arange(3) == "xyz".index(axis), -1.0, 1.0)
+            _check_mirror(scene, term, here, there, axis)
+        if model == "eighth":
             _check_mirror(scene, term, here, here[:, [1, 0, 2]], "x = y")
 
 
@@ -155,10 +145,10 @@ def _check_mirror(scene: Posed, term: LocalGap, here: Array, there: Array, plane
 
 def _check_gaps(scene: Posed) -> None:
     """Refuse a law of the gap where its variations are not known."""
-    name = next((t.name for t in scene.terms if isinstance(t, GapTerm)), None)
+    name = next((law.name for law in scene.by_form.laws), None)
     if name is not None and scene.motion != "spines":
         raise SceneError(f'terms: "{name}" needs motion = "spines"')
-    lines = [t.name for t in scene.terms if isinstance(t, (LineTerm, TrimmedContactLine))]
+    lines = [t.name for t in (*scene.by_form.lines, *scene.by_form.passed)]
     if name is not None and lines:
         raise SceneError(
             f'terms: "{name}" changes the tension at the contact line "{lines[0]}", which is '
@@ -175,9 +165,9 @@ def check_held(scene: Posed) -> None:
     ------
     SceneError
     """
-    held = [s.edge for s in scene.supports if isinstance(s, (Fixed, Sliding))]
-    held += [edge for s in scene.supports if isinstance(s, Joint) for edge in s.edges]
-    walls = scene.directions is not None or any(isinstance(s, Symmetry) for s in scene.supports)
+    kinds = scene.by_kind
+    held = [*kinds.held, *(edge for joint in kinds.joints for edge in joint.edges)]
+    walls = scene.directions is not None or kinds.mirrors
     if scene.surface.space.shared is not None and scene.directions is None:
         raise SceneError(
             "directions: missing; the control points of a membrane that is folded from a square "
@@ -193,11 +183,7 @@ def check_held(scene: Posed) -> None:
 
 def _check_weight(scene: Posed) -> None:
     """Refuse a scene whose liquid and particles are weighed by two gravities."""
-    pulls = [
-        t.density_of_liquid * np.array(t.acceleration)
-        for t in scene.terms
-        if isinstance(t, Gravity)
-    ]
+    pulls = [t.density_of_liquid * np.array(t.acceleration) for t in scene.by_form.weights]
     own = scene.liquid_density * np.array(scene.acceleration)
     # a sheet may be computed without its liquid's weight
     if not own.any() or (not pulls and scene.kind == "liquid_sheet"):

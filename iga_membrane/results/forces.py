@@ -101,7 +101,7 @@ def line_on_sphere(
 
 def sphere_lines(scene: Scene) -> list[SphereContactLine]:
     """The membrane's lines on spheres at its edges, in the scene's scale."""
-    return [t for t in scene.local_terms() if isinstance(t, SphereContactLine)]
+    return scene.local_terms().on_spheres
 
 
 def pull_on_sphere(
@@ -120,9 +120,7 @@ def pull_on_sphere(
             pressed[k] = unfitted.cap(surface.points, push)
         total = substrate_patches(scene, assembly, surface, own).total
         return Pull(total, assembly.whole(pressed))
-    term, edge = [
-        (term, edge) for term, edge in assembly.edges.lines if isinstance(term, SphereContactLine)
-    ][which]
+    term, edge = assembly.edges.on_spheres[which]
     points, body = surface.points, assembly.density(multipliers)
     if term.covered:
         return _pull_through(assembly, surface, term.edge)

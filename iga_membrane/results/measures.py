@@ -14,13 +14,8 @@ from ..solids import Plane, Sphere, SphereLattice, Spheres
 from ..surface.surface import Surface
 from ..terms import (
     BodyDensity,
-    Gravity,
-    PlaneContactLine,
     Scale,
     SphereContactLine,
-    SurfaceTension,
-    TrimmedContactLine,
-    Volume,
 )
 from ..terms import variations as vary
 from .apparent import apparent_angle, cassie_baxter_angle
@@ -53,7 +48,7 @@ def measures(
         values |= _surface_energies(scene, assembly, surface, values)
     body = assembly.density(multipliers)
     values["pressure"] = -float(body.at(scale.to_local(np.zeros(3)))) * scale.pressure
-    ends = sum(t.ends for t in scene.terms if isinstance(t, Volume))
+    ends = sum(t.ends for t in scene.by_form.volumes)
     carries = assembly.contact.carries
     values["volume"] = volume(assembly, surface) * scale.length**3 + ends
     if scene.kind == "asperity_cell":
@@ -84,10 +79,10 @@ def energies(scene: Scene, assembly: Assembly, surface: Surface) -> dict[str, fl
     """Energies by kind and areas; the potential energy of weight is zero at the origin."""
     scale, copies = scene.units, assembly.copies
     local = scene.local_terms()
-    gravity = sum((t.density() for t in local if isinstance(t, Gravity)), BodyDensity())
+    gravity = sum((t.density() for t in local.weights), BodyDensity())
     area, wetting, wet = assembly.interface(surface)
     weight = assembly.body_integral(surface, gravity)
-    tension = sum(t.gamma for t in local if isinstance(t, SurfaceTension))
+    tension = sum(t.gamma for t in local.surface_tensions)
     e_surf = copies * (tension * area + wetting) * scale.energy
     lift = _world_weight(scene, assembly, surface)
     return {
@@ -106,7 +101,6 @@ def _surface_energies(
     stabilization."""
     scale, table = scene.units, assembly.table
     (term, edge), edge_place = assembly.edges.wetted[0], surface.space.edge_place
-    assert isinstance(term, (PlaneContactLine, SphereContactLine))
     at = vary.element_points(table, surface.points)
     free = np.flatnonzero(table.parameters[:, 0, 1] > edge_place(term.edge)[1])
     area, _ = vary.energies(table.part(free), at.part(free), [])
@@ -132,11 +126,7 @@ def _world_weight(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     if not origin.any():
         return 0.0
     inside = volume(assembly, surface) * scene.units.length**3
-    pull = [
-        t.density_of_liquid * np.array(t.acceleration)
-        for t in scene.terms
-        if isinstance(t, Gravity)
-    ]
+    pull = [t.density_of_liquid * np.array(t.acceleration) for t in scene.by_form.weights]
     return float(-inside * sum(pull, np.zeros(3)) @ origin)
 
 
@@ -326,25 +316,22 @@ def _under_hole(scene: Scene, assembly: Assembly, surface: Surface) -> float:
     of its membrane."""
     lines = assembly.edges.wetted
     line = lines[0][0] if lines else None
-    if not isinstance(line, SphereContactLine) or not line.covered:
+    if line is None or line.ball is None or not line.covered:
         return 0.0
     sectors = np.arange(surface.space.bases[0].elements // assembly.copies)
     table = surface.space.edge_table("xi2=0", elements=sectors)
-    cap = SphereContactLine(line.gamma, line.sphere)
+    cap = SphereContactLine(line.gamma, line.ball)
     inside = cap.energy(table, surface.points, 0.0, BodyDensity(1.0))
     return assembly.copies * inside * scene.units.length**3
 
 
 def sphere_of(scene: Scene) -> Sphere | None:
     """The sphere on which the membrane's first line lies, in the scene's scale; None on a plane."""
-    for term in scene.local_terms():
-        if isinstance(term, PlaneContactLine):
-            return None
-        if isinstance(term, SphereContactLine):
-            return term.sphere
-        if isinstance(term, TrimmedContactLine) and isinstance(term.solid, Sphere):
-            return term.solid
-    return None
+    terms = scene.local_terms()
+    if terms.wetting:
+        return terms.wetting[0].ball
+    passed = terms.unfitted
+    return passed.solid if passed is not None and isinstance(passed.solid, Sphere) else None
 
 
 def own_asperity(scene: Scene) -> int | None:

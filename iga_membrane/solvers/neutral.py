@@ -10,12 +10,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..assembly.lagrangian import Assembly
-from ..dofs.boundary_conditions import Joint, Sliding
 from ..dofs.spines import Block
 from ..dofs.symmetry import mirrors
 from ..problems.scene import Scene
 from ..surface.surface import Surface
-from ..terms import Centroid, WettingLine
 from ..terms import variations as vary
 from .second_variation import SecondVariation, mirrored, normal_motions, rigid_motions
 
@@ -47,7 +45,7 @@ def neutral_motions(
     x = x.reshape(-1, 3)[:: max(1, x[..., 0].size // PLACES)]
     places = np.concatenate([x @ m for m in mirrors(scene.sector)])
     solids = [solid for term in scene.local_terms() for solid in term.solids]
-    solids += [s.on for s in scene.local_supports() if isinstance(s, Sliding)]
+    solids += [support.on for support in scene.local_supports().sliding]
     conditions = [normal_motions(places, solid.nearest(places).normal) for solid in solids]
     conditions += [EXACT / AXIAL * _across(surface, edge) for edge in _rims(scene)]
     pull = np.array(assembly.body.gradient)
@@ -75,7 +73,7 @@ class Neutral:
     def __init__(
         self, scene: Scene, assembly: Assembly, surface: Surface, state: SecondVariation
     ) -> None:
-        constrained = [t.axis for t in scene.terms if isinstance(t, Centroid)]
+        constrained = [t.axis for t in scene.by_form.centroids]
         self._scene, self._state = scene, state
         self.held = "".join(axis for axis in scene.hold if axis not in constrained)
         droplet = scene.kind == "sessile_droplet" and not scene.particles
@@ -126,14 +124,9 @@ def _simplest(motions: Array) -> Array:
 def _rims(scene: Scene) -> list[str]:
     """Edges that keep their place: fixed ones, but a contact line at 0 or 180 degrees, at which the
     membrane lies; and free ones, which end on a wall."""
-    closed: list[str] = []
-    for support in scene.supports:
-        if isinstance(support, Sliding):
-            closed.append(support.edge)
-        elif isinstance(support, Joint):
-            closed += support.edges
-    lines = [t for t in scene.terms if isinstance(t, WettingLine) and abs(t.strength) >= t.gamma]
-    closed += [line.edge for line in lines]
+    closed = [support.edge for support in scene.by_kind.sliding]
+    closed += [edge for joint in scene.by_kind.joints for edge in joint.edges]
+    closed += [line.edge for line in scene.by_form.wetting if abs(line.strength) >= line.gamma]
     return [edge for edge in scene.surface.space.open_edges if edge not in closed]
 
 

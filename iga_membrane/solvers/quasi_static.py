@@ -130,4 +130,4 @@ def _step(
 
 
 def _stabilization(scene: Scene) -> Stabilization:
-    return next(t for t in scene.local_terms() if isinstance(t, Stabilization))
+    return scene.local_terms().stabilizations[0]

@@ -66,6 +66,12 @@ class Contact(Term):
     compliance: float = 0.0
     traction: float = 0.0
     name = "contact"
+    forms = ("obstacles",)
+
+    @property
+    def repels(self) -> bool:
+        """Whether the solid is not wetted at all."""
+        return not self.adhesion
 
     @property
     def solids(self) -> tuple[Solid, ...]:

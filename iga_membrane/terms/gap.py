@@ -33,6 +33,7 @@ class GapTerm(Term):
 
     solid: Solid
     name = "gap"
+    forms = ("laws",)
 
     @abstractmethod
     def law(self, gap: Array) -> tuple[Array, Array, Array]:
@@ -86,6 +87,7 @@ class LocalGap(Term):
 
     term: GapTerm
     scale: Scale
+    forms = ("gaps",)
 
     @property
     def name(self) -> str:  # type: ignore[override]

@@ -26,6 +26,7 @@ class Gravity(BodyTerm):
     density_of_liquid: float
     acceleration: tuple[float, float, float]
     name = "gravity"
+    forms = ("bodies", "weights")
 
     def density(self) -> BodyDensity:
         x, y, z = (-self.density_of_liquid * g for g in self.acceleration)

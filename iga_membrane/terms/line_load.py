@@ -33,6 +33,7 @@ class NormalLineLoad(LineTerm):
     solid: Plane | Sphere
     edge: str
     name = "line_load"
+    forms = ("lines", "pressed")
 
     @property
     def strength(self) -> float:

@@ -53,10 +53,18 @@ class SphereContactLine(WettingLine):
     covered: bool = False
     toward: tuple[float, float, float] = (0.0, 0.0, 1.0)
     name = "wetting"
+    forms = ("lines", "wetting", "on_spheres")
 
     def __post_init__(self) -> None:
         if not self.covered:
             choice("edge", self.edge, RING_EDGES)
+
+    @property
+    def ball(self) -> Sphere:
+        return self.sphere
+
+    def normal(self, points: Array) -> Array:
+        return self.sphere.normal(points)
 
     @property
     def strength(self) -> float:

@@ -37,6 +37,7 @@ class Stabilization(Term):
     mu: float
     projected: bool = False
     name = "stabilization"
+    forms = ("stabilizations",)
 
     def scaled(self, scale: Scale) -> Stabilization:
         return Stabilization(self.mu / scale.tension, self.projected)

@@ -21,6 +21,7 @@ class SurfaceTension(AreaTerm):
 
     gamma: float
     name = "surface_tension"
+    forms = ("areas", "surface_tensions")
 
     def tension(self) -> float:
         return self.gamma

@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -218,9 +218,16 @@ class BodyDensity:
 
 
 class Term(ABC):
-    """Something the membrane pays for. The name is its key in a solution's energies."""
+    """Something the membrane pays for.
+
+    Attributes
+    ----------
+    name : its key in a solution's energies.
+    forms : lists of :class:`.terms.Terms` in which it counts.
+    """
 
     name: str
+    forms: ClassVar[tuple[str, ...]] = ()
 
     @property
     def solids(self) -> tuple[Solid, ...]:
@@ -236,6 +243,8 @@ class Term(ABC):
 class AreaTerm(Term):
     """Energy per area of the membrane."""
 
+    forms: ClassVar[tuple[str, ...]] = ("areas",)
+
     @abstractmethod
     def tension(self) -> float:
         """Energy per area."""
@@ -243,6 +252,8 @@ class AreaTerm(Term):
 
 class BodyTerm(Term):
     """Energy per volume of liquid."""
+
+    forms: ClassVar[tuple[str, ...]] = ("bodies",)
 
     @abstractmethod
     def density(self) -> BodyDensity:
@@ -254,6 +265,8 @@ class Constraint(BodyTerm):
 
     ``density`` is the integrand; the membrane's energy gets ``-multiplier * density``.
     """
+
+    forms: ClassVar[tuple[str, ...]] = ("constraints",)
 
     @property
     @abstractmethod
@@ -274,6 +287,7 @@ class LineTerm(Term):
     """
 
     edge: str
+    forms: ClassVar[tuple[str, ...]] = ("lines", "others")
 
     @property
     @abstractmethod
@@ -301,7 +315,29 @@ class WettingLine(LineTerm):
     ----------
     gamma : surface tension.
     covered : whether the membrane covers the wetted area, too.
+    toward : unit vector out of the solid to the liquid.
     """
 
     gamma: float
     covered: bool = False
+    toward = (0.0, 0.0, 1.0)
+    forms: ClassVar[tuple[str, ...]] = ("lines", "wetting")
+
+    @property
+    def ball(self) -> Sphere | None:
+        """The sphere on which it lies; None on the plane z = 0."""
+        return None
+
+    def normal(self, points: Array) -> Array:
+        """(..., 3) unit normals of its solid at points (..., 3) of it."""
+        return np.broadcast_to([0.0, 0.0, 1.0], points.shape)
+
+    @property
+    def repels(self) -> bool:
+        """Whether the solid is flat and not wetted at all."""
+        return self.ball is None and not self.covered and self.strength >= self.gamma
+
+    @property
+    def turn(self) -> float:
+        """1 where the edge runs counterclockwise about the solid's normal, else -1."""
+        return 1.0

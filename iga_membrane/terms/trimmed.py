@@ -56,6 +56,7 @@ class TrimmedContactLine(Term):
     solid: Solid
     toward: Array | None = None
     name = "wetting"
+    forms = ("passed",)
 
     def __post_init__(self) -> None:
         if isinstance(self.solid, (SphereLattice, Spheres)) and self.solid.base is not None:

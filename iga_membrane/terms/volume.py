@@ -29,6 +29,7 @@ class Pressure(BodyTerm):
 
     pressure: float
     name = "pressure"
+    forms = ("bodies", "pressures")
 
     def density(self) -> BodyDensity:
         return BodyDensity(-self.pressure)
@@ -52,6 +53,7 @@ class Volume(Constraint):
     value: float
     ends: float = 0.0
     name = "volume"
+    forms = ("constraints", "volumes")
 
     @property
     def target(self) -> float:
@@ -81,6 +83,7 @@ class Centroid(Constraint):
 
     axis: str
     target: float = 0.0
+    forms = ("constraints", "centroids")
 
     @property
     def name(self) -> str:  # type: ignore[override]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, TypeGuard
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..assembly.lagrangian import TINY
 from ..contact.model import ContactModel
 from ..contact.obstacle import Obstacle, is_obstacle
 from ..deadline import check_time
-from ..dofs.boundary_conditions import Fixed, Sector, Symmetry
+from ..dofs.boundary_conditions import Sector
 from ..dofs.spines import Motion
 from ..dofs.symmetry import sector_table
 from ..problems.scene import Scene
@@ -28,18 +28,7 @@ from ..solids import Sphere
 from ..splines import EdgeTable
 from ..surface.ring import rational_matrix
 from ..surface.surface import Surface
-from ..terms import (
-    AreaTerm,
-    BodyDensity,
-    LineTerm,
-    LocalGap,
-    NormalLineLoad,
-    Pressure,
-    SphereContactLine,
-    Term,
-    Volume,
-    WettingLine,
-)
+from ..terms import BodyDensity, NormalLineLoad, Terms, WettingLine
 from .balance import Loads, line_balance
 from .evidence import Audit
 from .own_lines import nodal_forces, outward_pull
@@ -72,10 +61,10 @@ def audit(
     """
     space, sector = surface.space, scene.sector
     terms = scene.local_terms()
-    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+    tension = terms.tension
     total, absolute = np.zeros(motion.size + 1), np.zeros(motion.size + 1)
     whole = sector_table(space, sector, (2 * points[0], 2 * points[1]))
-    laws = [term for term in terms if isinstance(term, LocalGap)]
+    laws = terms.gaps
     loads, lowest = Loads(sector.copies), np.inf
     for first in range(0, len(whole.functions), AT_A_TIME):
         check_time()
@@ -114,11 +103,10 @@ def audit(
     )
     if is_obstacle(contact):
         return replace(found, **_lying(scene, surface, body, loads, contact, others, points))
-    lines = [t for t in terms if isinstance(t, WettingLine)]
-    if not lines:
+    if not terms.wetting:
         depth = max(0.0, -lowest) / surface.size if laws else None
         return replace(found, penetration=depth)
-    return replace(found, **_ending(scene, surface, body, loads.inside, lines, points))
+    return replace(found, **_ending(scene, surface, body, loads.inside, terms.wetting, points))
 
 
 def _lying(
@@ -141,7 +129,7 @@ def _lying(
         found["penetration"], found["deepest"] = _depth(surface, contact, points)
         found["angle"] = _tilt(surface, contact)
     if scene.line_inside is not None:
-        term = next(t for t in scene.local_terms() if isinstance(t, WettingLine))
+        term = scene.local_terms().wetting[0]
         line = contact_line(surface, scene.line_inside, 2 * points[0], sphere_of(scene))
         found["angle"] = cosine_error(line, -term.strength / term.gamma - 1.0)
     if is_hung(scene):
@@ -172,29 +160,29 @@ def _ending(
     inside : volume behind the membrane alone.
     """
     sector = scene.sector
-    tension = sum(t.tension() for t in scene.local_terms() if isinstance(t, AreaTerm))
+    tension = scene.local_terms().tension
     found: dict[str, Any] = {}
     cosine, sunk, pull, carried = 0.0, 0.0, np.zeros(3), 0.0
     foot, on_spheres, standing = None, False, 90.0
     for term in lines:
-        sphere = term.sphere if isinstance(term, SphereContactLine) else None
+        sphere = term.ball
         line = contact_line(surface, term.edge, 2 * points[0], sphere)
         young = young_cosine(scene, surface, term, line)
         angle = float(np.arccos(np.clip(young, -1.0, 1.0)))
         cosine = max(cosine, cosine_error(line, young), key=abs)
         gap, nearest = _nearest(surface, points, sector, sphere)
         found.setdefault("deepest", nearest)
-        if not isinstance(term, SphereContactLine):
+        if sphere is None:
             found["penetration"], foot, standing = max(0.0, -gap), line, float(np.degrees(angle))
             continue
         on_spheres = True
-        cap = WettedCap(line, term.sphere, term.toward)
+        cap = WettedCap(line, sphere, term.toward)
         inside -= cap.push(BodyDensity(0.0, (0.0, 0.0, 1.0)))[2]
         line_pull = _line_pull(cap, tension, angle)
         pull += line_pull + cap.push(body)
         carried += float(abs(line_pull[2]) + abs(cap.push(body)[2]))
-        away = float(np.abs(term.sphere.gap(line.position)).max())
-        sunk = max(sunk, away / term.sphere.radius, -gap / term.sphere.radius)
+        away = float(np.abs(sphere.gap(line.position)).max())
+        sunk = max(sunk, away / sphere.radius, -gap / sphere.radius)
     found["angle"] = cosine
     if on_spheres:
         found["indentation" if foot is not None else "penetration"] = sunk
@@ -249,27 +237,18 @@ def relative_residual(total: Array, absolute: Array, tension: float) -> float | 
     return float(np.linalg.norm(total[:-1])) / size
 
 
-def pays_otherwise(term: Term) -> TypeGuard[LineTerm]:
-    """Whether a line pays for something else than wetting or what holds it on its solid."""
-    return isinstance(term, LineTerm) and not isinstance(term, (WettingLine, NormalLineLoad))
-
-
 def young_cosine(scene: Scene, surface: Surface, term: WettingLine, line: ContactLine) -> float:
     """Mean cosine of the angle at which a contact line is in balance: Young's, and what other lines
     along the same edge pull outwards."""
-    terms = scene.local_terms()
-    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
-    normal = np.broadcast_to([0.0, 0.0, 1.0], line.position.shape)
-    if isinstance(term, SphereContactLine):
-        normal = term.sphere.normal(line.position)
+    terms, normal = scene.local_terms(), term.normal(line.position)
     along, _ = surface.space.edge_place(term.edge)
     points = len(line.arc) // surface.space.bases[along].elements
     pull = sum(
         outward_pull(t, surface.space.edge_table(t.edge, points), surface, line, normal)
-        for t in terms
-        if pays_otherwise(t) and t.edge == term.edge
+        for t in terms.others
+        if t.edge == term.edge
     )
-    return -(term.strength + pull) / tension
+    return -(term.strength + pull) / terms.tension
 
 
 def _line_pull(cap: WettedCap, tension: float, angle: float) -> Array:
@@ -287,29 +266,25 @@ def edge_forces(
     """Control points (elements, local) and forces (elements, local, 3) on them of the lines at the
     membrane's edges, with Gauss points along them."""
     ring = np.arange(surface.space.bases[0].elements // scene.sector.copies)
-    for term in scene.local_terms():
-        if not isinstance(term, LineTerm):
-            continue
-        edge = surface.space.edge_table(term.edge, points, ring)
-        if pays_otherwise(term):
-            yield nodal_forces(term, edge, surface)
-            continue
+    terms, space = scene.local_terms(), surface.space
+    for other in terms.others:
+        yield nodal_forces(other, space.edge_table(other.edge, points, ring), surface)
+    for pressed in terms.pressed:
+        edge = space.edge_table(pressed.edge, points, ring)
+        yield edge.functions, _pressed(pressed, edge, surface.points)
+    for term in terms.wetting:
+        edge = space.edge_table(term.edge, points, ring)
         tangent = edge.d @ surface.points[edge.functions]
-        x = edge.values @ surface.points[edge.functions]
-        if isinstance(term, NormalLineLoad):
-            yield edge.functions, _pressed(term, edge, x, tangent)
-            continue
-        up, turn = np.broadcast_to([0.0, 0.0, 1.0], x.shape), 1.0
-        if isinstance(term, SphereContactLine):
-            up, turn = term.sphere.normal(x), term.turn
+        up = term.normal(edge.values @ surface.points[edge.functions])
         load = np.einsum("eqa,ea->eq", edge.values, line_load[edge.functions])
-        density = turn * term.strength * np.cross(tangent, up) - load[..., None] * up
+        density = term.turn * term.strength * np.cross(tangent, up) - load[..., None] * up
         pull = edge.values.transpose(0, 2, 1) @ (edge.weights[..., None] * density)
         yield edge.functions, pull
 
 
-def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) -> Array:
+def _pressed(term: NormalLineLoad, edge: EdgeTable, points: Array) -> Array:
     """(elements, local, 3) nodal forces of the normal line load, with its part of the gap."""
+    x, tangent = (rows @ points[edge.functions] for rows in (edge.values, edge.d))
     speed = np.linalg.norm(tangent, axis=-1, keepdims=True)
     load = term.strength * edge.weights[..., None]
     at = term.solid.nearest(x)
@@ -319,26 +294,23 @@ def _pressed(term: NormalLineLoad, edge: EdgeTable, x: Array, tangent: Array) ->
     )
 
 
-def missing_volume(terms: tuple[Term, ...], inside: float) -> float | None:
+def missing_volume(terms: Terms, inside: float) -> float | None:
     """Relative error of a prescribed volume; None where none is."""
-    held = next((t for t in terms if isinstance(t, Volume)), None)
+    held = terms.volume
     return abs(inside - held.target) / held.value if held else None
 
 
 def stands_free(scene: Scene) -> bool:
     """Whether nothing but the solid carries the liquid's weight."""
-    return not any(isinstance(t, Pressure) for t in scene.terms) and not is_hung(scene)
+    return not scene.by_form.pressures and not is_hung(scene)
 
 
 def is_hung(scene: Scene) -> bool:
     """Whether edges are held that no solid carries: an edge that leaves its solid at 0 or 180
     degrees is fixed where it does so by itself."""
-    lines = [t for t in scene.terms if isinstance(t, WettingLine)]
-    tangent = {t.edge for t in lines if abs(t.strength) >= t.gamma}
-    return any(
-        isinstance(s, Symmetry) or (isinstance(s, Fixed) and s.edge not in tangent)
-        for s in scene.supports
-    )
+    tangent = {t.edge for t in scene.by_form.wetting if abs(t.strength) >= t.gamma}
+    kinds = scene.by_kind
+    return bool(kinds.mirrors) or any(s.edge not in tangent for s in kinds.fixed)
 
 
 Place = tuple[float, float, float]

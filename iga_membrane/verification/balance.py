@@ -12,11 +12,10 @@ import numpy as np
 
 from ..arrays import Array, Mask
 from ..assembly.lagrangian import TINY
-from ..dofs.boundary_conditions import Fixed, Sliding, Symmetry
 from ..problems.scene import Scene
 from ..results.contact_line import ContactLine, contact_line
 from ..surface.surface import Surface
-from ..terms import BodyDensity, LocalGap
+from ..terms import BodyDensity
 
 FLAT = 1e-6
 """Vertical forces over the tension along all edges below which rounding is part of them: a membrane
@@ -82,9 +81,7 @@ class Loads:
 
 def pull_along(scene: Scene, line: ContactLine, tension: float) -> float:
     """Vertical pull ``gamma oint nu_z ds`` on the membrane along a line, by its own tangents."""
-    taut = tension + sum(
-        term.at(line.position).value for term in scene.local_terms() if isinstance(term, LocalGap)
-    )
+    taut = tension + sum(law.at(line.position).value for law in scene.local_terms().gaps)
     return float((taut * line.conormal[:, 2]) @ line.arc)
 
 
@@ -119,10 +116,9 @@ def line_balance(
 def _held(scene: Scene) -> list[str]:
     """Edges along which something pulls: free ones are level by themselves."""
     edges = scene.surface.space.open_edges
-    if any(isinstance(s, Symmetry) for s in scene.supports):
+    if scene.by_kind.mirrors:
         return list(edges)
-    held = {s.edge for s in scene.supports if isinstance(s, (Fixed, Sliding))}
-    return [edge for edge in edges if edge in held]
+    return [edge for edge in edges if edge in scene.by_kind.held]
 
 
 def _halves(

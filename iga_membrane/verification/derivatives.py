@@ -23,7 +23,7 @@ from ..assembly.lagrangian import TINY, Assembly
 from ..checks import integer, real
 from ..problems.scene import Scene
 from ..surface.surface import Surface
-from ..terms import SurfaceTension, Term
+from ..terms import Term
 
 STEPS = (1e-3, 1e-4, 1e-5)
 """Steps of the differences over the smallest element. Across the edges of contact errors of a
@@ -66,7 +66,7 @@ def check_derivatives(scene: Scene, seed: int = 0) -> dict[str, Derivatives]:
     Names of the terms' classes, numbered from the second of a class on, to their errors; and
     ``"all terms"`` together. An error of the surface tension is in every term's.
     """
-    tension: list[Term] = [t for t in scene.terms if isinstance(t, SurfaceTension)]
+    tension = scene.by_form.surface_tensions
     found: dict[str, Derivatives] = {}
     for term in scene.terms:
         alone = [*(t for t in tension if t is not term), term]

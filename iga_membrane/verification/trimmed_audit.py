@@ -19,7 +19,7 @@ from ..problems.scene import Scene
 from ..results.contact_line import ContactLine, contact_line, vertical_forces
 from ..splines import Table
 from ..surface.surface import Surface
-from ..terms import AreaTerm, BodyDensity, PlaneContactLine
+from ..terms import BodyDensity, WettingLine
 from ..terms.trimmed import Line
 from .audit import (
     AT_A_TIME,
@@ -52,7 +52,7 @@ def trimmed_audit(
     unfitted : with the contact lines of the state.
     """
     terms, sector = scene.local_terms(), scene.sector
-    tension = sum(t.tension() for t in terms if isinstance(t, AreaTerm))
+    tension = terms.tension
     outside = unfitted.cut(surface.points, 2 * (surface.space.degree + EXTRA))
     points = 2 * (surface.space.degree + 1)
     dense = surface.space.table(points, unfitted.elements)
@@ -82,7 +82,7 @@ def trimmed_audit(
     off = float(np.abs(line.at.gap).max(initial=0.0)) / unfitted.length
     own, young = (float(v[..., 2].ravel() @ arc.ravel()) for v in _conormals(line))
     pulls = [sector.copies * tension * pull for pull in (own, young)]
-    foot = next((t for t in terms if isinstance(t, PlaneContactLine)), None)
+    foot = next((t for t in terms.wetting if t.ball is None), None)
     rim = None if foot is None else contact_line(surface, foot.edge, points)
     found = Audit(
         relative_residual(total, absolute, tension),
@@ -107,7 +107,7 @@ def trimmed_audit(
     push = sector.copies * push
     below = 0.0
     if foot is not None and rim is not None:
-        on_plane = vertical_forces(rim, body, tension, foot.contact_angle)
+        on_plane = vertical_forces(rim, body, tension, _young(foot))
         push[2] -= on_plane.push - on_plane.line
         below = abs(on_plane.push)
     weight = float(np.linalg.norm(gradient)) * inside
@@ -130,7 +130,7 @@ def _conormals(line: Line) -> tuple[Array, Array]:
 
 
 def _worst_angle(
-    line: Line, arc: Array, rim: ContactLine | None, foot: PlaneContactLine | None
+    line: Line, arc: Array, rim: ContactLine | None, foot: WettingLine | None
 ) -> float | None:
     """Mean cosine of the angle less Young's, on the solid where it is worst; None without lines."""
     cosine = (line.m / line.area[..., None] * line.at.normal).sum(axis=-1)
@@ -138,8 +138,13 @@ def _worst_angle(
     off = np.bincount(place, ((cosine - line.cosine) * arc).sum(axis=1))
     errors = [*(off / np.bincount(place, arc.sum(axis=1)))]
     if rim is not None and foot is not None:
-        errors.append(cosine_error(rim, float(np.cos(np.radians(foot.contact_angle)))))
+        errors.append(cosine_error(rim, -foot.strength / foot.gamma))
     return float(max(errors, key=abs)) if errors else None
+
+
+def _young(line: WettingLine) -> float:
+    """Contact angle of a line in degrees."""
+    return float(np.degrees(np.arccos(np.clip(-line.strength / line.gamma, -1.0, 1.0))))
 
 
 def _membrane(

@@ -9,7 +9,6 @@ import numpy as np
 from ..arrays import Array
 from ..driver.lines import LineOnSolid, contact_lines
 from ..solids import Sphere
-from ..terms import TrimmedContactLine
 from .fields import solids
 from .mesh import trimming_solid
 
@@ -85,7 +84,7 @@ def _sphere_of(solution: Solution, each: LineOnSolid) -> tuple[Array, float]:
 def _spot(pv: Any, solution: Solution, each: LineOnSolid) -> Any:
     """The wetted surface inside a line: part of a sphere, or flat."""
     center, radius = _sphere_of(solution, each)
-    through = next((t for t in solution.scene.terms if isinstance(t, TrimmedContactLine)), None)
+    through = solution.scene.by_form.unfitted
     wet = solution.scene.units.axes[:, 2]
     if through is not None and each.solid >= 0:
         wet = through.axis(np.array(each.solid))

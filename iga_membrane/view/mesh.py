@@ -10,7 +10,6 @@ import numpy as np
 from ..arrays import Array
 from ..checks import integer
 from ..solids import Solid
-from ..terms import TrimmedContactLine
 from .drawing import pyvista
 from .fields import field
 
@@ -67,8 +66,8 @@ def membrane(
 
 def trimming_solid(solution: Solution) -> Solid | None:
     """The solid that the membrane passes through, in world coordinates."""
-    terms = (term for term in solution.scene.terms if isinstance(term, TrimmedContactLine))
-    return next((term.solid for term in terms), None)
+    passed = solution.scene.by_form.unfitted
+    return None if passed is None else passed.solid
 
 
 def outside(solid: Solid, mesh: Any) -> Any:

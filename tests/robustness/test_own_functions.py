@@ -9,7 +9,7 @@ import pytest
 from helpers import droplet, example
 
 import iga_membrane as iga
-from iga_membrane.terms import BodyDensity, BodyTerm, LineTerm
+from iga_membrane.terms import BodyDensity, BodyTerm, LineTerm, Term
 
 BALL = iga.Sphere(90.0, 0.5, (0.0, 0.0, -0.7))
 HERE = __name__
@@ -211,6 +211,26 @@ def test_a_wrong_term_is_blamed(term, said):
     scene = droplet(120.0, elements=4)
     with pytest.raises(iga.SceneError, match=rf"{HERE}\.{said}"):
         replace(scene, terms=[*scene.terms, term], ramp=None)
+
+
+class Formless(Term):
+    """What it pays for is not said."""
+
+    name, forms = "formless", ()
+
+    def scaled(self, scale):
+        return self
+
+
+class Unheard(Formless):
+    forms = ("volts",)
+
+
+@pytest.mark.parametrize("kind", [Formless, Unheard])
+def test_a_term_that_counts_in_no_form_is_refused(kind):
+    scene = droplet(90.0)
+    with pytest.raises(iga.SceneError, match=rf"{HERE}\.{kind.__name__}\.forms = .*AreaTerm"):
+        replace(scene, terms=[*scene.terms, kind()])
 
 
 @dataclass(frozen=True)
