@@ -120,21 +120,8 @@ def rule_of(hint: Any) -> Rule | None:
         return _any_of(inside)
     if kind is Literal:
         return partial(checks.choice, allowed=inside)
-    if kind is np.ndarray:
-        wanted = get_args(inside[1])[0]
-        kinds = {np.floating: "f", np.integer: "iu", np.bool_: "b"}
-        return partial(checks.ndarray, kinds=kinds[get_origin(wanted) or wanted])
-    if kind is Callable:
-        known = inside and inside[0] is not Ellipsis
-        return partial(checks.function, arguments=len(inside[0]) if known else None)
-    if kind is tuple:
-        return _tuple(inside)
-    if kind in (Sequence, Iterable):
-        return partial(checks.items, each=rule_of(inside[0]) or checks.anything)
-    if kind is Mapping:
-        return partial(checks.mapping, each=rule_of(inside[1]))
-    if kind in (Path, os.PathLike):
-        return checks.path
+    if kind in BY_KIND:
+        return BY_KIND[kind](inside)
     return checks.instance(kind) if isinstance(kind, type) else None
 
 
@@ -161,6 +148,36 @@ def _tuple(inside: tuple[Any, ...]) -> Rule:
         )
 
     return rule
+
+
+def _array(inside: tuple[Any, ...]) -> Rule:
+    """Of the kind of numbers that the annotation says."""
+    wanted = get_args(inside[1])[0]
+    kinds = {np.floating: "f", np.integer: "iu", np.bool_: "b"}
+    return partial(checks.ndarray, kinds=kinds[get_origin(wanted) or wanted])
+
+
+def _callable(inside: tuple[Any, ...]) -> Rule:
+    """Of as many arguments as the annotation says."""
+    known = inside and inside[0] is not Ellipsis
+    return partial(checks.function, arguments=len(inside[0]) if known else None)
+
+
+def _items(inside: tuple[Any, ...]) -> Rule:
+    return partial(checks.items, each=rule_of(inside[0]) or checks.anything)
+
+
+BY_KIND: Mapping[Any, Callable[[tuple[Any, ...]], Rule]] = {
+    np.ndarray: _array,
+    Callable: _callable,
+    tuple: _tuple,
+    Sequence: _items,
+    Iterable: _items,
+    Mapping: lambda inside: partial(checks.mapping, each=rule_of(inside[1])),
+    Path: lambda inside: checks.path,
+    os.PathLike: lambda inside: checks.path,
+}
+"""Rules of annotations by their kind, from what stands in their brackets."""
 
 
 def _any_of(kinds: tuple[Any, ...]) -> Rule | None:

@@ -83,17 +83,7 @@ def number(
     rule = f"{name} must be {' and '.join(rules) or 'a number'}, finite" + (
         f" ({unit})" * bool(unit)
     )
-    if isinstance(value, str):
-        raise refusal(
-            field, value, rule, "text is not read as a number: give it without quotes "
-            "and unit, all fields in one consistent set of units"
-        )  # fmt: skip
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise refusal(field, value, rule, f"got {type(value).__name__}, give a number")
-    try:
-        result = float(value)
-    except OverflowError:
-        result = math.inf
+    result = _float(field, value, rule)
     told = value if math.isinf(result) else result
     if not (math.isfinite(result) and result > above and least <= result <= most):
         raise refusal(field, told, rule, "choose a value within")
@@ -103,6 +93,21 @@ def number(
             "beyond it double precision has no room for products; choose other units",
         )  # fmt: skip
     return result
+
+
+def _float(field: str, value: Any, rule: str) -> float:
+    """A real number as a double, infinite where it is too large for one."""
+    if isinstance(value, str):
+        raise refusal(
+            field, value, rule, "text is not read as a number: give it without quotes "
+            "and unit, all fields in one consistent set of units"
+        )  # fmt: skip
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise refusal(field, value, rule, f"got {type(value).__name__}, give a number")
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def anything(field: str, value: Any) -> Any:
@@ -308,16 +313,19 @@ def array(field: str, value: Any, *, shape: tuple[int | None, ...] | None = None
     if found.size and found.dtype.kind not in "fiu":
         raise refusal(field, value, rule, f"got {found.dtype}")
     found = found.astype(float, copy=False)
-    if shape is not None and not (
-        found.ndim == len(shape)
-        and all(n in (None, m) for n, m in zip(shape, found.shape, strict=True))
-    ):
+    if shape is not None and not _fits(shape, found.shape):
         raise refusal(field, value, rule, f"got shape {found.shape}")
     bad = np.argwhere(~np.isfinite(found))
     if len(bad):
         place = "".join(f"[{k}]" for k in bad[0])
         raise refusal(f"{field}{place}", float(found[tuple(bad[0])]), rule, "give finite numbers")
     return found
+
+
+def _fits(wanted: tuple[int | None, ...], shape: tuple[int, ...]) -> bool:
+    """Whether a shape is the one that is wanted; None stands for any length."""
+    fits = (n in (None, m) for n, m in zip(wanted, shape, strict=False))
+    return len(shape) == len(wanted) and all(fits)
 
 
 def ndarray(
@@ -333,8 +341,7 @@ def ndarray(
     if not isinstance(value, (np.ndarray, np.generic)) or value.dtype.kind not in kinds:
         got = getattr(value, "dtype", type(value).__name__)
         raise refusal(field, value, "must be an array of numpy", f"got {got}")
-    last = value.shape[value.ndim - len(shape) :] if shape and value.ndim >= len(shape) else ()
-    if shape and not (last and all(n in (None, m) for n, m in zip(shape, last, strict=True))):
+    if shape and not _fits(shape, value.shape[-len(shape) :]):
         told = ", ".join("n" if n is None else str(n) for n in shape)
         raise refusal(field, value, f"must have the axes (..., {told})", f"got {value.shape}")
     return value
@@ -368,27 +375,6 @@ def mapping(field: str, value: Any, *, each: Rule | None = None) -> Any:
 def one_or_more(field: str, value: Any, *, each: Rule) -> Any:
     """A value, or a list of values."""
     return items(field, value, each=each, least=1) if listed(value) else each(field, value)
-
-
-LONGEST_PATH = 10_000
-"""Values of a path at most."""
-
-
-def path_values(field: str, values: Any) -> tuple[float, ...]:
-    """Two or more finite numbers, each different from the one before; a path may turn back."""
-    if not listed(values):
-        raise refusal(field, values, "a list of two or more numbers is needed", "give them")
-    given = list(values)
-    if not 2 <= len(given) <= LONGEST_PATH:
-        told = given if len(given) < 2 else f"{len(given)} numbers"
-        raise SceneError(
-            f"{field} = {told}: a path needs two or more values, at most {LONGEST_PATH}"
-        )
-    checked = tuple(number(f"{field}[{i}]", value) for i, value in enumerate(given))
-    for i in range(1, len(checked)):
-        if checked[i] == checked[i - 1]:
-            raise SceneError(f"{field}[{i}] = {checked[i]!r}: the same as the value before it")
-    return checked
 
 
 def suggestion(word: Any, allowed: Iterable[str]) -> str:

@@ -7,6 +7,7 @@ kinds of scenes allow is narrowed where they are made.
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from .checks import (
     NOT_NEGATIVE,
@@ -17,16 +18,39 @@ from .checks import (
     flag,
     integer,
     items,
+    listed,
     number,
     one_or_more,
     pair,
-    path_values,
+    refusal,
     state_file,
     text,
     vector,
     wet_angle,
     words,
 )
+from .errors import SceneError
+
+LONGEST_PATH = 10_000
+"""Values of a path at most."""
+
+
+def path_values(field: str, values: Any) -> tuple[float, ...]:
+    """Two or more finite numbers, each different from the one before; a path may turn back."""
+    if not listed(values):
+        raise refusal(field, values, "a list of two or more numbers is needed", "give them")
+    given = list(values)
+    if not 2 <= len(given) <= LONGEST_PATH:
+        told = given if len(given) < 2 else f"{len(given)} numbers"
+        raise SceneError(
+            f"{field} = {told}: a path needs two or more values, at most {LONGEST_PATH}"
+        )
+    checked = tuple(number(f"{field}[{i}]", value) for i, value in enumerate(given))
+    for i in range(1, len(checked)):
+        if checked[i] == checked[i - 1]:
+            raise SceneError(f"{field}[{i}] = {checked[i]!r}: the same as the value before it")
+    return checked
+
 
 FIELDS: dict[str, Rule] = {
     "liquid.surface_tension": POSITIVE,

@@ -39,28 +39,34 @@ def encode(value: Any, arrays: dict[str, Array]) -> Any:
     if isinstance(value, complex):
         return {"complex": [value.real, value.imag]}
     if isinstance(value, np.ndarray):
-        kind = {"f": float, "i": np.int64, "u": np.int64, "b": bool}[value.dtype.kind]
-        kept = np.ascontiguousarray(value, kind).reshape(value.shape)
-        mark = f"{kept.dtype.str}{kept.shape}".encode()
-        name = "a" + hashlib.sha256(mark + kept.tobytes()).hexdigest()[:32]
-        arrays[name] = kept
-        return {"array": name}
-    if isinstance(value, Mapping):
-        return {"map": [[str(key), encode(item, arrays)] for key, item in value.items()]}
+        return _put_aside(value, arrays)
+    if isinstance(value, (Mapping, tuple, list)):
+        return _several(value, arrays)
     if is_dataclass(value) and not isinstance(value, type):
-        inside = {
-            f.name: encode(getattr(value, f.name), arrays)
-            for f in fields(value)
-            if f.init and f.metadata.get("kept", True)
-        }
+        kept = [f.name for f in fields(value) if f.init and f.metadata.get("kept", True)]
+        inside = {name: encode(getattr(value, name), arrays) for name in kept}
         return {"record": _name(type(value)), "fields": inside}
-    if isinstance(value, tuple):
-        return {"tuple": [encode(item, arrays) for item in value]}
-    if isinstance(value, list):
-        return [encode(item, arrays) for item in value]
     if callable(value):
         return {"function": getattr(value, "__qualname__", type(value).__name__)}
     raise TypeError(f"a {type(value).__name__} cannot be kept in a file")
+
+
+def _several(value: Any, arrays: dict[str, Array]) -> Any:
+    """A mapping, a tuple or a list."""
+    if isinstance(value, Mapping):
+        return {"map": [[str(key), encode(item, arrays)] for key, item in value.items()]}
+    items = [encode(item, arrays) for item in value]
+    return {"tuple": items} if isinstance(value, tuple) else items
+
+
+def _put_aside(value: Array, arrays: dict[str, Array]) -> dict[str, str]:
+    """The mark of an array, which is kept by it."""
+    kind = {"f": float, "i": np.int64, "u": np.int64, "b": bool}[value.dtype.kind]
+    kept = np.ascontiguousarray(value, kind).reshape(value.shape)
+    mark = f"{kept.dtype.str}{kept.shape}".encode()
+    name = "a" + hashlib.sha256(mark + kept.tobytes()).hexdigest()[:32]
+    arrays[name] = kept
+    return {"array": name}
 
 
 def decode(tree: Any, arrays: Mapping[str, Array], also: Sequence[type] = ()) -> Any:
@@ -75,26 +81,32 @@ def decode(tree: Any, arrays: Mapping[str, Array], also: Sequence[type] = ()) ->
     ValueError
         Anything that :func:`encode` does not write.
     """
-    if isinstance(tree, list):
+
+    def items_of(tree: list[Any]) -> list[Any]:
         return [decode(item, arrays, also) for item in tree]
+
+    def table_of(pairs: Any) -> dict[str, Any]:
+        return {str(key): decode(item, arrays, also) for key, item in pairs}
+
+    if isinstance(tree, list):
+        return items_of(tree)
     if not isinstance(tree, dict):
         return tree
+    if tree.keys() == {"array"} and tree["array"] not in arrays:
+        raise ValueError(f"array {tree['array']} is missing")
     match tree:
         case {"array": str(name)}:
-            if name not in arrays:
-                raise ValueError(f"array {name} is missing")
             return arrays[name]
         case {"complex": [float(real), float(imaginary)]}:
             return complex(real, imaginary)
         case {"map": list(items)}:
-            return {str(key): decode(item, arrays, also) for key, item in items}
+            return table_of(items)
         case {"tuple": list(items)}:
-            return tuple(decode(item, arrays, also) for item in items)
+            return tuple(items_of(items))
         case {"enum": str(kind), "value": str(name)}:
             return _enum(kind)[name]
         case {"record": str(kind), "fields": dict(inside)}:
-            made = _record(kind, also)
-            return made(**{key: decode(item, arrays, also) for key, item in inside.items()})
+            return _record(kind, also)(**table_of(inside.items()))
         case {"function": str(name)}:
             return _Lost(name)
     raise ValueError(f"no record: {list(tree)[:3]}")

@@ -86,16 +86,7 @@ class Job:
         running: dict[Future[Record], str] = {}
         try:
             while waiting or running:
-                for _ in range(len(waiting)):
-                    if len(running) >= self._in_flight:
-                        break
-                    key = waiting.popleft()
-                    if not self._free(key):
-                        if key not in self._found:
-                            waiting.append(key)
-                        continue
-                    arguments = self._scene_of, self._left[key], self._options
-                    running[pool.submit(solve_point, *arguments)] = key
+                self._submit(pool, waiting, running)
                 if not running:
                     time.sleep(0.2)  # other processes compute what is left
                     continue
@@ -112,6 +103,20 @@ class Job:
             for future, key in running.items():
                 future.cancel()
                 self._release(key)
+
+    def _submit(
+        self, pool: Executor, waiting: deque[str], running: dict[Future[Record], str]
+    ) -> None:
+        """Hand out points that no other process has, as many as may be in flight."""
+        for _ in range(len(waiting)):
+            if len(running) >= self._in_flight:
+                return
+            key = waiting.popleft()
+            if self._free(key):
+                arguments = self._scene_of, self._left[key], self._options
+                running[pool.submit(solve_point, *arguments)] = key
+            elif key not in self._found:
+                waiting.append(key)
 
     def _free(self, key: str) -> bool:
         """Claim a point, unless another process has it or has finished it."""

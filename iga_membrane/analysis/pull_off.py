@@ -18,7 +18,7 @@ from ..driver.solve import solve
 from ..errors import SceneError, SolveError
 from ..problems.scene import FreeParticles, Scene
 from ..solids import Sphere
-from ..solvers.load_stepping import Bracket
+from ..solvers.load_path import Bracket
 from ..solvers.options import SolverOptions
 
 FIRST, LONGEST = 0.05, 0.2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import itertools
 import logging
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from contextlib import contextmanager
@@ -176,13 +177,8 @@ def sweep(
     names = tuple(over)
     _check_parameters(scene_of, points[0])
     store = None if out is None else RecordStore(output_folder("out", out))
-    keys = [RecordStore.key(point) for point in points]
-    found: dict[str, Record] = {}
-    if store is not None:
-        found = {key: kept for key in keys if (kept := store.read(key)) is not None}
-    function = identity(scene_of)
-    void = {key: kept for key, kept in found.items() if not _counts(kept, function, retry_failed)}
-    found = {key: kept for key, kept in found.items() if key not in void}
+    keys, function = [RecordStore.key(point) for point in points], identity(scene_of)
+    found, void = _kept(store, keys, function, retry_failed)
     mixed = _check_mixed(scene_of, function, found, options, allow_mixed)
     left = {key: point for key, point in zip(keys, points, strict=True) if key not in found}
     computed = 0
@@ -193,38 +189,58 @@ def sweep(
             job = Job(
                 scene_of, left, found, void, store, options, report, _in_flight(executor, workers)
             )
-            try:
-                with _running(executor, workers, timeout) as pool:
-                    job.run(pool)
-            except BrokenExecutor as error:
-                log.warning("the executor broke (%s): going on with processes of our own", error)
-                with _running(None, workers, timeout) as pool:
-                    job.run(pool)
-            computed = len(job.computed)
-    records = [found[key] for key in keys]
-    return Sweep(names, records, computed, mixed)
+            _run(job, executor, workers, timeout)
+        computed = len(job.computed)
+    return Sweep(names, [found[key] for key in keys], computed, mixed)
+
+
+def _kept(
+    store: RecordStore | None, keys: Sequence[str], function: str, retry_failed: bool
+) -> tuple[dict[str, Record], dict[str, Record]]:
+    """Records of points by their keys: those that count, and those that do not."""
+    found: dict[str, Record] = {}
+    void: dict[str, Record] = {}
+    for key in keys if store is not None else ():
+        kept = store.read(key) if store is not None else None
+        if kept is not None:
+            (found if _counts(kept, function, retry_failed) else void)[key] = kept
+    return found, void
+
+
+def _run(job: Job, executor: Executor | None, workers: int | None, timeout: float | None) -> None:
+    """Compute the points that are left; if the executor breaks, by processes of our own."""
+    try:
+        with _running(executor, workers, timeout) as pool:
+            job.run(pool)
+    except BrokenExecutor as error:
+        log.warning("the executor broke (%s): going on with processes of our own", error)
+        with _running(None, workers, timeout) as pool:
+            job.run(pool)
 
 
 def _grid(over: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     check_record("over", over, Mapping)
     if not over:
         raise SceneError("over = {}: name at least one parameter with its values")
-    total = 1
-    for name, values in over.items():
-        if isinstance(values, str) or not hasattr(values, "__len__") or not len(values):
-            raise SceneError(f"over[{name!r}] = {values!r}: a list of values is needed")
-        total *= len(values)
+    plain = [_values(f"over[{name!r}]", values) for name, values in over.items()]
+    total = math.prod(map(len, plain))
     if total > MOST:
         raise SceneError(f"over: {total} points, at most {MOST}")
-    plain = [np.asarray(values).tolist() for values in over.values()]
-    for name, values in zip(over, plain, strict=True):
-        for i, value in enumerate(values):
-            if not isinstance(value, (str, bool)):
-                number(f"over[{name!r}][{i}]", value)
     points = [dict(zip(over, values, strict=True)) for values in itertools.product(*plain)]
     if len({RecordStore.key(point) for point in points}) < len(points):
         raise SceneError("over: a value is given twice; give it once")
     return points
+
+
+def _values(told: str, values: Sequence[Any]) -> list[Any]:
+    """The values of one parameter."""
+    if isinstance(values, str) or not hasattr(values, "__len__") or not len(values):
+        raise SceneError(f"{told} = {values!r}: a list of values is needed")
+    plain: list[Any] = np.asarray(values).tolist()
+    for i, value in enumerate(plain):
+        if not isinstance(value, (str, bool)):
+            number(f"{told}[{i}]", value)
+    return plain
 
 
 def _check_parameters(scene_of: Callable[..., Scene], point: dict[str, Any]) -> None:

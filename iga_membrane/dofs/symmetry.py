@@ -128,14 +128,8 @@ def net_image(space: Space, net: Any, fold: float) -> Any:
     return net[image]
 
 
-def sector_images(space: Space, sector: Sector) -> Index:
-    """(count,) the control point of which each is a mirror image (or itself).
-
-    Raises
-    ------
-    SceneError
-        If the space is neither a closed ring of whole sectors nor a square.
-    """
+def _check_sectors(space: Space, sector: Sector) -> None:
+    """Refuse a space that its sectors do not divide."""
     ring, other = space.bases
     if ring.periodic and ring.elements % sector.copies:
         raise SceneError(
@@ -144,6 +138,17 @@ def sector_images(space: Space, sector: Sector) -> Index:
         )
     if not ring.periodic and sector.model == "eighth" and ring.elements != other.elements:
         raise SceneError('model = "eighth" needs as many elements in both directions')
+
+
+def sector_images(space: Space, sector: Sector) -> Index:
+    """(count,) the control point of which each is a mirror image (or itself).
+
+    Raises
+    ------
+    SceneError
+        If the space is neither a closed ring of whole sectors nor a square.
+    """
+    _check_sectors(space, sector)
     n1, n2 = space.net_shape
     numbers = np.arange(n1 * n2) if space.shared is None else space.shared
     first = np.arange(n1 * n2) if space.leaders is None else space.leaders

@@ -11,7 +11,8 @@ import numpy as np
 from ..assembly.lagrangian import Assembly
 from ..problems.scene import Scene
 from ..solvers.free_edge import tangent_edge
-from ..solvers.load_stepping import LoadPath, LoadStep, load_stepping
+from ..solvers.load_path import LoadPath, LoadStep
+from ..solvers.load_stepping import load_stepping
 from ..solvers.newton import NewtonOptions, newton
 from ..solvers.options import SolverOptions
 from ..solvers.predictor import first

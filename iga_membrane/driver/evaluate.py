@@ -19,7 +19,7 @@ from ..problems.scene import Scene
 from ..results.forces import ParticleForces, particle_forces
 from ..results.measures import measures, volume
 from ..results.particles import forces_on_particles
-from ..solvers.load_stepping import Bracket, LoadPath, LoadStep, Progress
+from ..solvers.load_path import Bracket, LoadPath, LoadStep, Progress
 from ..solvers.newton import NewtonResult
 from ..solvers.options import SolverOptions
 from ..solvers.stability import Stability, stability_of

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arrays import Array, Mask
 from ..problems.scene import FreeParticles, Scene
-from ..solvers.load_stepping import Bracket
+from ..solvers.load_path import Bracket
 from ..status import Status
 from .solution import Solution, with_effort
 

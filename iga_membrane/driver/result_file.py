@@ -14,7 +14,7 @@ from .. import __version__
 from ..errors import SceneError, StateError
 from ..io.scene_file import SCHEMA, read_tables
 from ..results.forces import ParticleForces
-from ..solvers.load_stepping import LoadStep
+from ..solvers.load_path import LoadStep
 from .solution import Solution
 
 

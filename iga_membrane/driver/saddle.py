@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..assembly.lagrangian import Assembly
 from ..errors import SceneError
 from ..problems.scene import Scene
-from ..solvers.load_stepping import LoadStep
+from ..solvers.load_path import LoadStep
 from ..solvers.newton import NewtonOptions, NewtonResult, newton
 from ..solvers.options import SolverOptions
 from ..status import Status

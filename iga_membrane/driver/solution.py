@@ -18,7 +18,7 @@ from ..own import complaints
 from ..problems.scene import Scene
 from ..results.forces import ParticleForces
 from ..solids import Sphere
-from ..solvers.load_stepping import Bracket, LoadStep, Progress
+from ..solvers.load_path import Bracket, LoadStep, Progress
 from ..solvers.newton import Iteration
 from ..status import Status
 from ..surface.kinematics import Kinematics

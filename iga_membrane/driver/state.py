@@ -13,7 +13,7 @@ from ..errors import OutputError, SceneError, StateError
 from ..files import previous, read_arrays, write_arrays
 from ..problems.scene import Ramp, Scene
 from ..records import decode, digest, encode
-from ..solvers.load_stepping import Journal, Progress
+from ..solvers.load_path import Journal, Progress
 from ..solvers.options import SolverOptions
 from ..splines import Space
 from ..surface.surface import Surface

@@ -10,11 +10,12 @@ from typing import Any, Literal
 from ..arguments import checked
 from ..arrays import Array
 from ..assembly.lagrangian import Assembly
-from ..checks import path_values
 from ..errors import SceneError, SolveError, StateError
+from ..fields import path_values
 from ..own import begin, called
 from ..problems.scene import Ramp, Scene
-from ..solvers.load_stepping import Bracket, LoadStep, load_stepping
+from ..solvers.load_path import Bracket, LoadStep
+from ..solvers.load_stepping import load_stepping
 from ..solvers.newton import NewtonResult
 from ..solvers.options import SolverOptions
 from ..solvers.predictor import first, settings_of
@@ -142,13 +143,7 @@ def walk(
     ramp: Ramp, options: SolverOptions, report: Callable[[float], None] = lambda load: None
 ) -> list[Solution]:
     """Solutions at the ramp's values; the last one says how the walk ended."""
-    if options.follow_instability:
-        raise SceneError("solver.follow_instability: not available yet along a path; leave it out")
-    if any(ramp(load).free_edge is not None for load in ramp.stops):
-        raise SceneError(
-            "path: not available at 0 or 180 degrees on a smooth solid, where the edge is searched "
-            "for at every value; solve the scenes one by one (sweep), or stay between"
-        )
+    _check_walk(ramp, options)
     started = thread_time()
     if len({_formulation(ramp(load)) for load in ramp.stops}) > 1:
         return _each(ramp, options, started, report)
@@ -164,19 +159,7 @@ def walk(
     found: list[Solution] = list(journal.start.found) if journal.start else []
 
     def reached(scene: Scene, state: NewtonResult) -> tuple[NewtonResult, Sequence[Solution]]:
-        assembly.load(scene)
-
-        def concluded(state: NewtonResult) -> Solution:
-            return conclude(Outcome(scene, state, []), assembly, options, started)
-
-        solution = concluded(state)
-        if solution.status is Status.UNDERRESOLVED and not assembly.contact.lies:
-            # the way may have distorted the mesh: the same state on the scene's own
-            own = first(scene, assembly, settings_of(scene, options, started))
-            fresh = concluded(own)
-            before, after = (s.measures["energy"] for s in (solution, fresh))
-            if fresh.success and abs(after - before) <= SAME * abs(before):
-                solution, state = fresh, own
+        solution, state = _concluded(scene, state, assembly, options, started)
         if solution.status is Status.INTERRUPTED:
             # what was not judged is not kept: it is done again
             late = "the CPU limit was reached before an equilibrium was judged"
@@ -191,6 +174,33 @@ def walk(
         outcome = Outcome(path.scene, path.result, history, path.bracket, path.progress)
         return [*found, conclude(outcome, assembly, options, started)]
     return [*found[:-1], replace(found[-1], load_steps=tuple(history))]
+
+
+def _check_walk(ramp: Ramp, options: SolverOptions) -> None:
+    """Refuse what is not built along a path."""
+    if options.follow_instability:
+        raise SceneError("solver.follow_instability: not available yet along a path; leave it out")
+    if any(ramp(load).free_edge is not None for load in ramp.stops):
+        raise SceneError(
+            "path: not available at 0 or 180 degrees on a smooth solid, where the edge is searched "
+            "for at every value; solve the scenes one by one (sweep), or stay between"
+        )
+
+
+def _concluded(
+    scene: Scene, state: NewtonResult, assembly: Assembly, options: SolverOptions, started: float
+) -> tuple[Solution, NewtonResult]:
+    """The solution of a state at one of a path's values, and the state to go on from."""
+    assembly.load(scene)
+    solution = conclude(Outcome(scene, state, []), assembly, options, started)
+    if solution.status is not Status.UNDERRESOLVED or assembly.contact.lies:
+        return solution, state
+    # the way may have distorted the mesh: the same state on the scene's own
+    own = first(scene, assembly, settings_of(scene, options, started))
+    fresh = conclude(Outcome(scene, own, []), assembly, options, started)
+    before, after = (s.measures["energy"] for s in (solution, fresh))
+    same = fresh.success and abs(after - before) <= SAME * abs(before)
+    return (fresh, own) if same else (solution, state)
 
 
 def _formulation(scene: Scene) -> frozenset[str]:

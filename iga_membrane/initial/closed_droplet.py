@@ -106,23 +106,21 @@ def whole_skin(
     wide = _foot(drop, pattern, many)
     meridian = _meridian(drop, wide)
     reach = inverse_lemniscate_sine(meridian.size_at(wide))
-    coarse = bool(elements)  # by the user's wish
+    known = many or (elements and pattern.repels and pattern.under(drop.foot) > FEW)
     if spots:
         fine, needed = _finest(meridian, reach, PER_RADIUS * wide / length, spots)
         elements = elements or needed
     else:
         elements = elements or _elements(drop, pattern, wide, reach, many)
         fine = fine_part(reach, elements) if many else FINE
-    enough = many or (coarse and pattern.repels and pattern.under(drop.foot) > FEW)
-    narrow = enough and pattern.unresolved(drop.pressure, wide / (fine * elements))
-    ring = RING * pattern.spot(drop.pressure) if narrow else None
+    coarse = known and pattern.unresolved(drop.pressure, wide / (fine * elements))
+    ring = RING * pattern.spot(drop.pressure) if coarse else None
     stretch = Stretch(fine, reach / fine) if reach < fine or spots else Stretch()
     space = pillow_space(degree, elements, stretch.aspect)
     points, directions = closed_surface(space, meridian, stretch)
     if start in STARTS[1:]:
-        points, _ = closed_surface(
-            space, ball((3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)), stretch
-        )
+        whole = ball((3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0))
+        points, _ = closed_surface(space, whole, stretch)
         points[:, 2] += length if start == "above" else 0.0
     elif many:
         points[:, 2] -= 0.5 * pattern.sag(drop.pressure)

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from ..arguments import checked
-from ..checks import choice, path_values
+from ..checks import choice
 from ..errors import SceneError
+from ..fields import path_values
 from ..files import read_file
 from ..initial.liquid import MODELS
 from ..problems.scene import Ramp, Scene
@@ -102,20 +103,7 @@ def read_scene(data: Any) -> SceneFile:
     if "scene" not in data:
         raise SceneError(f"scene: missing; must be one of {', '.join(map(repr, SCENES))}")
     kind = choice("scene", data["scene"], SCENES)
-    tables = {
-        name: table_of(name, data.get(name, {}))
-        for name in KEYS
-        if name and name not in ("particle", "path")
-    }
-    for name in ("particle", "path"):
-        entries = data.get(name, [])
-        if not isinstance(entries, list):
-            raise SceneError(f"{name}: must be a list of tables, [[{name}]]")
-        for i, entry in enumerate(entries):
-            label = f"{name}[{i}]"
-            check_values(table_of(name, entry, label), name, label)
-    for name, table in tables.items():
-        check_values(table, name)
+    tables = _tables(data)
     if kind not in READERS:
         raise later(f'scene = "{kind}"')
     for name in FOREIGN[kind]:
@@ -125,6 +113,23 @@ def read_scene(data: Any) -> SceneFile:
     if data.get("path"):
         return SceneFile(_along_path(data), limits)
     return SceneFile(READERS[kind](data, tables), limits)
+
+
+def _tables(data: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Tables by their names, every key and value of them and of those in lists checked."""
+    several = "particle", "path"
+    alone = [name for name in KEYS if name not in ("", *several)]
+    tables = {name: table_of(name, data.get(name, {})) for name in alone}
+    for name in several:
+        entries = data.get(name, [])
+        if not isinstance(entries, list):
+            raise SceneError(f"{name}: must be a list of tables, [[{name}]]")
+        for i, entry in enumerate(entries):
+            label = f"{name}[{i}]"
+            check_values(table_of(name, entry, label), name, label)
+    for name, table in tables.items():
+        check_values(table, name)
+    return tables
 
 
 def _along_path(data: Mapping[str, Any]) -> Scene:

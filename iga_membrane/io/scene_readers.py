@@ -101,23 +101,10 @@ def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Sph
     """The solid under a droplet, None for a free one; a sphere or a lattice has its tops at
     z = 0."""
     kind = table.get("kind", "plane")
-    allowed = _SUBSTRATE_KEYS[kind]
-    for key in table:
-        if key != "kind" and not allowed:
-            raise SceneError(f'substrate.{key}: substrate.kind = "none" has no fields; remove it')
-        if key != "kind" and key not in allowed:
-            raise SceneError(
-                f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
-                f"it or choose another substrate.kind ({', '.join(_SUBSTRATE_KEYS)})"
-            )
+    _check_substrate(table, kind)
     if kind == "none":
         return None
     angle = table["contact_angle"]
-    for key in _NEEDED[kind]:
-        if key not in table:
-            raise SceneError(f"substrate.{key}: missing; a {kind} needs it")
-    if isinstance(angle, list) and kind != "spheres":
-        raise SceneError(f"substrate.contact_angle = {angle}: one number is needed here")
     if kind == "plane":
         return Plane(angle)
     if kind == "sphere":
@@ -133,6 +120,25 @@ def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Sph
             table.get("base"),
         )
     return Spheres(angle, table["centers"], table["radii"], table.get("base"))
+
+
+def _check_substrate(table: Mapping[str, Any], kind: str) -> None:
+    """Refuse fields that a kind of substrate does not have, or lacks."""
+    allowed = _SUBSTRATE_KEYS[kind]
+    for key in table:
+        if key != "kind" and not allowed:
+            raise SceneError(f'substrate.{key}: substrate.kind = "none" has no fields; remove it')
+        if key != "kind" and key not in allowed:
+            raise SceneError(
+                f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
+                f"it or choose another substrate.kind ({', '.join(_SUBSTRATE_KEYS)})"
+            )
+    for key in _NEEDED[kind]:
+        if key not in table:
+            raise SceneError(f"substrate.{key}: missing; a {kind} needs it")
+    angle = table.get("contact_angle")
+    if isinstance(angle, list) and kind != "spheres":
+        raise SceneError(f"substrate.contact_angle = {angle}: one number is needed here")
 
 
 def _offset(table: Mapping[str, Any]) -> tuple[float, float]:

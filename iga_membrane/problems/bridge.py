@@ -125,6 +125,32 @@ def bridge(parts: Question, ends: Ends) -> Foot:
     SceneError
         A start, a penalty, or another kind of contact line.
     """
+    _check_bridge(parts, ends)
+    mesh, scale, gamma = parts.asked.mesh(), parts.scale, parts.liquid.surface_tension
+    low, high = End.of(_local(scale, ends[0]), 1.0), End.of(_local(scale, ends[1]), -1.0)
+    arc = least_energy_toroid(low, high, BALL)
+    start = axisymmetric(ring_space(mesh.space, mesh.degree, mesh.elements), arc)
+    lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2])]
+    lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2]))
+    surface, edges = start.moved(scale.to_world(start.points)), ("xi2=0", "xi2=1")
+    wet = tuple(
+        (edge, Plane(0.0) if isinstance(solid, Plane) else scale.local_sphere(solid), side)
+        for edge, solid, side in zip(edges, ends, (1.0, -1.0), strict=True)
+        if solid.contact_angle == 0.0
+    )
+    supports: list[Support] = [
+        Fixed(edge)
+        if solid.contact_angle == 0.0
+        else Sliding(edge, None if isinstance(solid, Plane) else solid)
+        for edge, solid in zip(edges, ends, strict=True)
+    ]
+    sector = sector_of(mesh, parts.bond)
+    rims = WetRims(wet) if wet else None
+    return Foot(surface, sector, mesh, lines, supports, free_edge=rims)
+
+
+def _check_bridge(parts: Question, ends: Ends) -> None:
+    """Refuse what a bridge does not have, and ends that overlap."""
     if parts.start is not None or parts.law.penalty is not None:
         raise SceneError("particle: a droplet between two solids needs its own start, no penalty")
     if parts.contact_line not in ("auto", "conforming"):
@@ -139,32 +165,11 @@ def bridge(parts: Question, ends: Ends) -> Foot:
             f"plane, less than its radius {ends[1].radius:g}: it reaches {-gap:.3g} into the "
             "substrate"
         )
-    mesh, scale, gamma = parts.asked.mesh(), parts.scale, parts.liquid.surface_tension
-    low, high = End.of(_local(scale, ends[0]), 1.0), End.of(_local(scale, ends[1]), -1.0)
-    arc = least_energy_toroid(low, high, BALL)
-    start = axisymmetric(ring_space(mesh.space, mesh.degree, mesh.elements), arc)
-    lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2])]
-    lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2]))
-    surface, edges = start.moved(scale.to_world(start.points)), ("xi2=0", "xi2=1")
-    wet = tuple(
-        (edge, Plane(0.0) if isinstance(solid, Plane) else scale.local_sphere(solid), side)
-        for edge, solid, side in zip(edges, ends, (1.0, -1.0), strict=True)
-        if solid.contact_angle == 0.0
-    )
-    if wet and parts.bond[:2].any():
+    if parts.bond[:2].any() and any(solid.contact_angle == 0.0 for solid in ends):
         raise SceneError(
             "contact_angle = 0: not available yet where gravity leans across the axis of a bridge; "
             "turn it along the axis, or take an angle > 0"
         )
-    supports: list[Support] = [
-        Fixed(edge)
-        if solid.contact_angle == 0.0
-        else Sliding(edge, None if isinstance(solid, Plane) else solid)
-        for edge, solid in zip(edges, ends, strict=True)
-    ]
-    sector = sector_of(mesh, parts.bond)
-    rims = WetRims(wet) if wet else None
-    return Foot(surface, sector, mesh, lines, supports, free_edge=rims)
 
 
 def _local(scale: Scale, solid: Plane | Sphere) -> Plane | Sphere:

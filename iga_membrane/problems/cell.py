@@ -14,7 +14,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import words
-from ..dofs.boundary_conditions import Mirror, Sector
+from ..dofs.boundary_conditions import Mirror, Model, Sector
 from ..errors import SceneError
 from ..initial.closed_droplet import smallest_model
 from ..initial.liquid import MODELS, Discretization, Liquid, Mesh, space_name, with_defaults
@@ -88,27 +88,7 @@ def asperity_cell(
     liquid, asked = with_defaults(liquid, discretization)
     r, (x, y, z) = sphere.radius, sphere.center
     Scale(r, liquid.surface_tension).check_lengths("cell.size", size)
-    reach = max(abs(x), abs(y)) if shape == "square" else float(np.hypot(x, y))
-    if reach + r >= 0.5 * size:
-        raise SceneError(
-            f"cell.size = {size:g}: the sphere must fit into it, so it must be > "
-            f"{2.0 * (reach + r):g}"
-        )
-    along = size / r * (1.0 if shape == "square" else 0.5)
-    fine = max(1.0, NARROW * r / (0.5 * size - reach - r))
-    mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * fine * along)))
-    if mesh.space != "bspline":
-        raise SceneError(
-            f'discretization.space = "{space_name(mesh.space)}": not available yet in a cell; '
-            '"bspline" is'
-        )
-    smallest = smallest_model(sphere, size, (0.0, 0.0))
-    model = mesh.model or smallest
-    if MODELS.index(model) > MODELS.index(smallest):
-        raise SceneError(
-            f'discretization.model = "{model}": the sphere stands at x, y = {x:g}, {y:g}; '
-            f'"{smallest}" is the smallest model here'
-        )
+    mesh, model = _mesh(sphere, size, shape, asked)
     if penalty is not None and sphere.contact_angle < 180.0:
         raise SceneError(
             'solver.contact = "penalty": only at 180 degrees; leave it out below, contact lines '
@@ -117,9 +97,7 @@ def asperity_cell(
     area = size**2 if shape == "square" else 0.25 * np.pi * size**2
     unit = (x / r, y / r, z / r)
     angle = sphere.contact_angle
-    lying = (
-        angle == 180.0 or contact_line == "adhesion" or (contact_line == "auto" and angle > SHARP)
-    )
+    lying = _lies(contact_line, angle)
     drape = _drape(pressure * r / liquid.surface_tension, area / r**2, angle, lying)
     local, directions = _start(shape, size / r, unit, drape, mesh)
     surface = local.moved(r * (local.points + [0.0, 0.0, unit[2] + 1.0]))
@@ -141,24 +119,19 @@ def asperity_cell(
             "contact_line": contact_line,
         },
     )
-    begin, beyond = 0.5 * pressure, lying and pressure >= carried
-    if beyond:
-        begin = NEARLY * carried
-
+    beyond = lying and pressure >= carried
+    begin = NEARLY * carried if beyond else 0.5 * pressure
+    traction = pressure + 2.0 * liquid.surface_tension / r
+    lain_on = Contact(
+        sphere, law, penetration_tolerance, adhesion(liquid, angle), traction=traction
+    )
+    passed = TrimmedContactLine(liquid.surface_tension, sphere)
     return Scene(
         surface,
         [
             SurfaceTension(liquid.surface_tension),
             Pressure(pressure),
-            Contact(
-                sphere,
-                law,
-                penetration_tolerance,
-                adhesion(liquid, angle),
-                traction=pressure + 2.0 * liquid.surface_tension / r,
-            )
-            if lying
-            else TrimmedContactLine(liquid.surface_tension, sphere),
+            lain_on if lying else passed,
         ],
         [Sector(model), *(Mirror(edge) for edge in (EDGES if shape == "square" else ()))],
         scale=Scale(r, liquid.surface_tension),
@@ -175,6 +148,44 @@ def asperity_cell(
         recipe=recipe,
         description=_describe(sphere, size, pressure, shape, liquid, mesh, model),
     )
+
+
+def _mesh(sphere: Sphere, size: float, shape: str, asked: Discretization) -> tuple[Mesh, Model]:
+    """Mesh and model of a cell into which its sphere fits.
+
+    Raises
+    ------
+    SceneError
+    """
+    r, (x, y, _) = sphere.radius, sphere.center
+    reach = max(abs(x), abs(y)) if shape == "square" else float(np.hypot(x, y))
+    if reach + r >= 0.5 * size:
+        raise SceneError(
+            f"cell.size = {size:g}: the sphere must fit into it, so it must be > "
+            f"{2.0 * (reach + r):g}"
+        )
+    along = size / r * (1.0 if shape == "square" else 0.5)
+    fine = max(1.0, NARROW * r / (0.5 * size - reach - r))
+    mesh = asked.mesh(degree=2, elements=int(np.ceil(PER_RADIUS * fine * along)))
+    if mesh.space != "bspline":
+        raise SceneError(
+            f'discretization.space = "{space_name(mesh.space)}": not available yet in a cell; '
+            '"bspline" is'
+        )
+    smallest = smallest_model(sphere, size, (0.0, 0.0))
+    model = mesh.model or smallest
+    if MODELS.index(model) > MODELS.index(smallest):
+        raise SceneError(
+            f'discretization.model = "{model}": the sphere stands at x, y = {x:g}, {y:g}; '
+            f'"{smallest}" is the smallest model here'
+        )
+    return mesh, model
+
+
+def _lies(contact_line: str, angle: float) -> bool:
+    """Whether the membrane lies on its sphere."""
+    sharp = contact_line == "auto" and angle > SHARP
+    return sharp or angle == 180.0 or contact_line == "adhesion"
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,16 +61,7 @@ def adapted(scene: Posed, origin: Origin) -> dict[str, Any]:
     _check(scene, before, changed)
     stale = [name for name in WAYS if (way := getattr(scene, name)) and way is origin.ways[name]]
     fields = ", ".join(changed)
-    if "free_particles" in stale:
-        raise SceneError(
-            f"{fields}: replaced in a scene with particles that move, which is solved by scenes "
-            "built anew; build it with other arguments, or fix them by free_particles=None"
-        )
-    if "ramp" in stale and scene.ramp is not None and scene.ramp.asked:
-        raise SceneError(
-            f"{fields}: replaced in a scene with a path of its own, which leads to the scene "
-            "before; give another ramp, or ramp=None"
-        )
+    _check_stale(scene, stale, fields)
     found: dict[str, Any] = dict.fromkeys([*stale, "recipe"])
     weight = _weight(scene, before) if "terms" in changed else {}
     if "predictor" in stale and changed == ["terms"]:
@@ -82,15 +73,27 @@ def adapted(scene: Posed, origin: Origin) -> dict[str, Any]:
         f"{fields}: replaced after the scene was built; its ways round a failing solve "
         f"({', '.join(lost)}) are left out"
     )
-    described = {"replaced": sorted({*scene.description.get("replaced", ()), *changed})}
-    return (
-        found
-        | weight
-        | {
-            "warnings": (*scene.warnings, told) if lost else scene.warnings,
-            "description": dict(scene.description) | described if scene.description else {},
-        }
-    )
+    found |= weight
+    if lost:
+        found["warnings"] = (*scene.warnings, told)
+    if scene.description:
+        replaced = sorted({*scene.description.get("replaced", ()), *changed})
+        found["description"] = dict(scene.description) | {"replaced": replaced}
+    return found
+
+
+def _check_stale(scene: Posed, stale: Sequence[str], fields: str) -> None:
+    """Refuse a scene that cannot be solved without ways that are no more its own."""
+    if "free_particles" in stale:
+        raise SceneError(
+            f"{fields}: replaced in a scene with particles that move, which is solved by scenes "
+            "built anew; build it with other arguments, or fix them by free_particles=None"
+        )
+    if "ramp" in stale and scene.ramp is not None and scene.ramp.asked:
+        raise SceneError(
+            f"{fields}: replaced in a scene with a path of its own, which leads to the scene "
+            "before; give another ramp, or ramp=None"
+        )
 
 
 def _check(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> None:
@@ -106,16 +109,11 @@ def _check(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> N
                 f"{name} = {shown(getattr(scene, name))}: replaced alone, but {why}; "
                 f"build the scene anew with another {name}"
             )
+    _check_frame(scene, before, changed)
     if "kind" in changed and before["kind"] != "membrane":
         raise SceneError(
             f'kind = "{scene.kind}": a scene of kind "{before["kind"]}" has no measures of '
             "another; build the scene anew"
-        )
-    asked = scene.scale or Scale(scene.surface.size, 1.0)
-    frames = [(s.origin, s.rotation) for s in (asked, before["scale"])]
-    if "scale" in changed and scene.kind != "membrane" and frames[0] != frames[1]:
-        raise SceneError(
-            "scale: the frame of this scene is that of its solid; keep origin and rotation"
         )
     lines = [tuple(terms.lines) for terms in (scene.by_form, before["terms"])]
     if scene.free_edge is not None and not (
@@ -124,6 +122,16 @@ def _check(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> N
         raise SceneError(
             f"{', '.join(changed)}: replaced where an edge at 180 degrees is looked for; build "
             "the scene anew"
+        )
+
+
+def _check_frame(scene: Posed, before: Mapping[str, Any], changed: Sequence[str]) -> None:
+    """Refuse another frame than that of the scene's solid."""
+    asked = scene.scale or Scale(scene.surface.size, 1.0)
+    frames = [(s.origin, s.rotation) for s in (asked, before["scale"])]
+    if "scale" in changed and scene.kind != "membrane" and frames[0] != frames[1]:
+        raise SceneError(
+            "scale: the frame of this scene is that of its solid; keep origin and rotation"
         )
 
 

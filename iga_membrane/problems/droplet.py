@@ -135,17 +135,15 @@ def sessile_droplet(
     if grains or penalty is not None or start is not None:
         contact_line, *others = particle_lines(substrate, grains, contact_line)
     else:
-        pushed = any(local[k] and "xyz"[k] not in hold for k in range(2))
+        pushed = any(pull and axis not in hold for axis, pull in zip("xy", local, strict=False))
         contact_line, *others = asperity_lines(place.carrier, length, pushed, contact_line)
     x, y, z = (tuple(float(a) for a in row) for row in place.axes)
     scale = Scale(length, liquid.surface_tension, place.origin, (x, y, z))
     bond = _bond_numbers(volume, liquid, local, scale)
     _check_carrier(place, scale, bond, hold)
-    law = Contact(
-        place.carrier,
-        None if penalty is None else penalty * liquid.surface_tension / length**2,
-        penetration_tolerance,
-    )
+    unit = liquid.surface_tension / length**2
+    stiffness = None if penalty is None else penalty * unit
+    law = Contact(place.carrier, stiffness, penetration_tolerance)
     held = "" if hold == "none" else hold
     beside = fixed(grains) if substrate is not None else ()
     parts = Question(
@@ -195,7 +193,19 @@ def sessile_droplet(
         again = mesh if grains else Discretization()
         other = recipe.changed(contact_line=others[0], discretization=again)
         scene = replace(scene, otherwise=other)
-    if place.ends is not None or substrate is None:
+    return _with_ways(scene, place, built, parts, terms, grains)
+
+
+def _with_ways(
+    scene: Scene,
+    place: _Place,
+    built: Foot,
+    parts: Question,
+    terms: list[Term],
+    grains: tuple[Sphere, ...],
+) -> Scene:
+    """The scene with its particles, and its ways round a failing solve."""
+    if place.ends is not None or place.free:
         return between_particles(scene, built, grains, place.axes[:, 2])
     if grains:
         return with_its_particles(scene, built, grains, terms)

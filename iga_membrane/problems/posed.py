@@ -8,7 +8,8 @@ from typing import Any, Protocol
 from ..arrays import Array
 from ..dofs.boundary_conditions import Sector, Support, Supports
 from ..surface.surface import Surface
-from ..terms import Scale, Term, Terms
+from ..terms import Scale, Term
+from ..terms.terms import Terms
 
 
 class Posed(Protocol):

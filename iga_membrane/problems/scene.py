@@ -17,8 +17,9 @@ from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
-from ..terms import Scale, Term, Terms
+from ..terms import Scale, Term
 from ..terms.own import scaled_term
+from ..terms.terms import Terms
 from .changed import Origin, adapted, origin_of
 from .recipe import Recipe
 from .well_posed import check_mirrors, check_parts

@@ -96,26 +96,11 @@ def liquid_sheet(
     liquid, asked = with_defaults(liquid, discretization)
     through = contact_line == "trimmed"
     mesh = asked.mesh(**(THROUGH if through else {"elements": 8 if boundary == "square" else 20}))
+    sheet = _Sheet(particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight)
     sector = _sector(mesh, particle)
-    own_sector = mesh.model is None and sector.model in ("full", "half")
-    _check_asked(particle, boundary, pressure, volume, own_sector)
-    described = _describe(
-        particle, size, boundary, liquid, gravity, pressure, volume, liquid_weight, mesh, sector
-    )
-    if particle is not None:
-        _check_place(particle, size, boundary)
+    sheet.check(off_axis=mesh.model is None and sector.model in ("full", "half"))
     if membrane is not None:
-        if particle is None or pressure or volume is not None or liquid_weight or start is not None:
-            raise SceneError(
-                'solver.contact_line = "line_load": not available yet for a sheet without a '
-                "particle, with pressure, volume or the liquid's weight, or from a start"
-            )
-        mesh = asked.mesh(degree=3, elements=18)
-        return sheet_with_wetted_part(
-            particle, size, boundary, liquid, gravity, mesh, sector, membrane, described
-        )
-    if volume is None:
-        pressure = 0.0 if pressure is None else pressure
+        return _whole(sheet, asked.mesh(degree=3, elements=18), sector, start, membrane)
     recipe = Recipe(
         "liquid_sheet",
         {
@@ -124,15 +109,143 @@ def liquid_sheet(
             "boundary": boundary,
             "liquid": liquid,
             "gravity": gravity,
-            "pressure": pressure,
+            "pressure": sheet.held_pressure,
             "volume": volume,
             "liquid_weight": liquid_weight,
             "discretization": Discretization(mesh.space, mesh.degree, mesh.elements, sector.model),
             "contact_line": contact_line,
         },
     )
-    gamma = liquid.surface_tension
-    directions, ramp, curvature = None, None, (pressure or 0.0) / gamma
+    surface, directions, ramp = _start(sheet, mesh, start, recipe, through=through)
+    lines, supports = _lines(particle, boundary, liquid.surface_tension, through=through)
+    started = recipe.changed(start=start)
+    scene = Scene(
+        surface,
+        [SurfaceTension(liquid.surface_tension), *lines, *sheet.bodies()],
+        [sector, *supports],
+        scale=sheet.scale,
+        grading=Grading() if particle is None or through else sheet_grading(surface, size),
+        ramp=ramp,
+        directions=directions,
+        substrate=particle,
+        kind="liquid_sheet",
+        recipe=started,
+        acceleration=(0.0, 0.0, -gravity),
+        liquid_density=liquid.density,
+        description=sheet.described(mesh, sector),
+        warnings=implausible(gravity, liquid.surface_tension, liquid.density, volume),
+    )
+    if particle is None:
+        return scene
+    if particle.contact_angle == 180.0:
+        scene = replace(scene, free_edge=EdgeOnSphere(particle))
+    liquid_above = np.array([[0.0, 0.0, 1.0]])
+    return moving(scene, [particle], liquid_above, liquid.surface_tension, started, "particle")
+
+
+@dataclass(frozen=True, eq=False)
+class _Sheet:
+    """What is asked of a sheet, by the arguments of :func:`liquid_sheet`."""
+
+    particle: Sphere | None
+    size: float
+    boundary: str
+    liquid: Liquid
+    gravity: float
+    pressure: float | None
+    volume: float | None
+    liquid_weight: bool
+
+    @property
+    def scale(self) -> Scale:
+        """Lengths in radii of the particle, or half sizes of the rim."""
+        length = 0.5 * self.size if self.particle is None else self.particle.radius
+        return Scale(length, self.liquid.surface_tension)
+
+    @property
+    def held_pressure(self) -> float | None:
+        """The pressure that is prescribed; None where a volume is."""
+        return self.pressure or 0.0 if self.volume is None else None
+
+    @property
+    def curvature(self) -> float:
+        """Twice the mean curvature that the prescribed pressure bends a sheet to."""
+        return (self.held_pressure or 0.0) / self.liquid.surface_tension
+
+    def check(self, *, off_axis: bool) -> None:
+        """Refuse what contradicts itself, and a particle at 180 degrees where it is not built."""
+        if self.pressure is not None and self.volume is not None:
+            raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
+        self.scale.check_lengths("sheet.size", self.size)
+        if self.particle is None:
+            return
+        if self.particle.contact_angle == 180.0 and (self.boundary == "square" or off_axis):
+            raise SceneError(
+                "particle.contact_angle = 180: not available yet with a square rim or off the axis"
+            )
+        _check_place(self.particle, self.size, self.boundary)
+
+    def bodies(self) -> list[Term]:
+        """The volume that is held, or the pressure, if there is any, and the liquid's weight."""
+        found: list[Term] = []
+        if self.volume is not None:
+            # a sheet's volume is signed, so the constraint's positive scale is the rim's own
+            whole = np.pi * (0.5 * self.size) ** 3
+            found.append(Volume(whole, ends=whole - self.volume))
+        elif self.pressure:
+            found.append(Pressure(self.pressure))
+        if self.liquid_weight and self.gravity * self.liquid.density:
+            found.append(Gravity(self.liquid.density, (0.0, 0.0, -self.gravity)))
+        return found
+
+    def described(self, mesh: Mesh, sector: Sector) -> dict[str, Any]:
+        """In words of the scene file."""
+        held = {"pressure": self.held_pressure, "volume": self.volume}
+        particles = [] if self.particle is None else [self.particle]
+        rim = {
+            "boundary": self.boundary,
+            "size": self.size,
+            "liquid_weight": self.liquid_weight,
+        }
+        liquid = self.liquid
+        return {
+            "scene": "liquid_sheet",
+            "liquid": {"surface_tension": liquid.surface_tension, "density": liquid.density},
+            "gravity": {"acceleration": self.gravity, "direction": [0.0, 0.0, -1.0]},
+            "particle": [described_particle(each) for each in particles],
+            "sheet": rim | {key: value for key, value in held.items() if value is not None},
+            "discretization": mesh.described(sector.model),
+        }
+
+
+def _whole(
+    sheet: _Sheet, mesh: Mesh, sector: Sector, start: Surface | None, membrane: WholeMembrane
+) -> Scene:
+    """The sheet by the paper's formulation."""
+    beyond = sheet.pressure or sheet.volume is not None or sheet.liquid_weight
+    if sheet.particle is None or beyond or start is not None:
+        raise SceneError(
+            'solver.contact_line = "line_load": not available yet for a sheet without a '
+            "particle, with pressure, volume or the liquid's weight, or from a start"
+        )
+    return sheet_with_wetted_part(
+        sheet.particle,
+        sheet.size,
+        sheet.boundary,
+        sheet.liquid,
+        sheet.gravity,
+        mesh,
+        sector,
+        membrane,
+        sheet.described(mesh, sector),
+    )
+
+
+def _start(
+    sheet: _Sheet, mesh: Mesh, start: Surface | None, recipe: Recipe, *, through: bool
+) -> tuple[Surface, Array | None, Ramp | None]:
+    """The start, the directions of its control points if they are given, and the way to it."""
+    particle, size, boundary = sheet.particle, sheet.size, sheet.boundary
     if through:
         wrong = particle is None or particle.contact_angle == 180.0 or mesh.space != "bspline"
         if particle is None or wrong or start is not None:
@@ -140,59 +253,13 @@ def liquid_sheet(
                 'solver.contact_line = "trimmed": needs a particle below 180 degrees, the scene\'s '
                 'own start and space "bspline"'
             )
-        surface, directions = sheet_through(particle, 0.5 * size, boundary, mesh, curvature)
-    elif start is None:
-        surface = sheet_start(particle, size, boundary, mesh, curvature, volume)
-        ramp = _ramp_of(recipe)
-    else:
-        surface = start
+        surface, directions = sheet_through(particle, 0.5 * size, boundary, mesh, sheet.curvature)
+        return surface, directions, None
+    if start is not None:
         check_net(start, sheet_space(particle, boundary, mesh))
-    lines, supports = _lines(particle, boundary, gamma, through=through)
-    terms = [SurfaceTension(gamma), *lines, *_bodies(size, pressure, volume)]
-    if liquid_weight and gravity * liquid.density:
-        terms.append(Gravity(liquid.density, (0.0, 0.0, -gravity)))
-    length = 0.5 * size if particle is None else particle.radius
-    Scale(length, gamma).check_lengths("sheet.size", size)
-    scene = Scene(
-        surface,
-        terms,
-        [sector, *supports],
-        scale=Scale(length, gamma),
-        grading=Grading() if particle is None or through else sheet_grading(surface, size),
-        ramp=ramp,
-        directions=directions,
-        substrate=particle,
-        kind="liquid_sheet",
-        recipe=recipe.changed(start=start),
-        acceleration=(0.0, 0.0, -gravity),
-        liquid_density=liquid.density,
-        description=described,
-        warnings=implausible(gravity, gamma, liquid.density, volume),
-    )
-    if particle is None:
-        return scene
-    if particle.contact_angle == 180.0:
-        scene = replace(scene, free_edge=EdgeOnSphere(particle))
-    liquid_above = np.array([[0.0, 0.0, 1.0]])
-    started = recipe.changed(start=start)
-    return moving(scene, [particle], liquid_above, gamma, started, "particle")
-
-
-def _check_asked(
-    particle: Sphere | None,
-    boundary: str,
-    pressure: float | None,
-    volume: float | None,
-    off_axis: bool,
-) -> None:
-    """Refuse what contradicts itself, and a particle at 180 degrees where it is not built."""
-    if pressure is not None and volume is not None:
-        raise SceneError("sheet.pressure, sheet.volume: both are prescribed; give one of them")
-    tangent = particle is not None and particle.contact_angle == 180.0
-    if tangent and (boundary == "square" or off_axis):
-        raise SceneError(
-            "particle.contact_angle = 180: not available yet with a square rim or off the axis"
-        )
+        return start, None, None
+    surface = sheet_start(particle, size, boundary, mesh, sheet.curvature, sheet.volume)
+    return surface, None, _ramp_of(recipe)
 
 
 def _lines(
@@ -205,15 +272,6 @@ def _lines(
     tangent = particle.contact_angle == 180.0
     edge = Fixed("xi2=0") if tangent else Sliding("xi2=0", particle)
     return [SphereContactLine(gamma, particle)], [edge, Fixed("xi2=1")]
-
-
-def _bodies(size: float, pressure: float | None, volume: float | None) -> list[Term]:
-    """The volume that is held, or the pressure, if there is any."""
-    if volume is not None:
-        # a sheet's volume is signed, so the constraint's positive scale is the rim's own
-        whole = np.pi * (0.5 * size) ** 3
-        return [Volume(whole, ends=whole - volume)]
-    return [Pressure(pressure)] if pressure else []
 
 
 def _ramp_of(recipe: Recipe) -> Ramp | None:
@@ -304,28 +362,3 @@ def _check_place(particle: Sphere, size: float, boundary: str) -> None:
             f"particle[0].center = {list(particle.center)}: must lie inside the rim, less than "
             f"{0.5 * size:g} from its middle"
         )
-
-
-def _describe(
-    particle: Sphere | None,
-    size: float,
-    boundary: str,
-    liquid: Liquid,
-    gravity: float,
-    pressure: float | None,
-    volume: float | None,
-    liquid_weight: bool,
-    mesh: Mesh,
-    sector: Sector,
-) -> dict[str, Any]:
-    held = {"pressure": pressure, "volume": volume}
-    particles = [] if particle is None else [particle]
-    return {
-        "scene": "liquid_sheet",
-        "liquid": {"surface_tension": liquid.surface_tension, "density": liquid.density},
-        "gravity": {"acceleration": gravity, "direction": [0.0, 0.0, -1.0]},
-        "particle": [described_particle(each) for each in particles],
-        "sheet": {"boundary": boundary, "size": size, "liquid_weight": liquid_weight}
-        | {key: value for key, value in held.items() if value is not None},
-        "discretization": mesh.described(sector.model),
-    }

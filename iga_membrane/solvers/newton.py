@@ -154,47 +154,103 @@ def _iterate(
 ) -> None:
     """Newton steps until convergence; improves ``result`` in place."""
     rolling, target = Rolling(assembly), _Target(options.near)
-    meridians = Meridians(grading, options.polish_below)
-    left, rounds, crawling = options.max_iterations, 0, 0
-    while left and rounds < ROUNDS:
-        left -= 1
+    meridians, budget = Meridians(grading, options.polish_below), _Budget(assembly, options)
+    while budget.left:
         motion, system, residual = _linearized(assembly, result)
         direction = _solved(system, result, rolling.farthest, residual, target)
         displacement = assembly.displacement(motion, direction.step)
         size, near = _sizes(assembly, result.surface, displacement)
-        longest = min(1.0, options.step_limit / size) if size > 0 else 1.0
-        longest = min(longest, 0.5 / near) if near > 0.5 else longest
+        longest = _longest(size, near, options.step_limit)
         taken, moved = search(assembly, system, result.surface, displacement, direction, longest)
         result.iterations.append(Iteration(residual, size, taken, direction.shift))
         log.debug("%s, %d, residual %.0e", options.phase, len(result.iterations), residual)
-        crawling = crawling + 1 if taken < CRAWL else 0
+        budget.spend(taken)
         if moved is None and residual <= ROUNDING:
             result.floor = residual
             return
-        if moved is None or (assembly.contact.lies and crawling >= PATIENCE):
-            raise _stalled(assembly, crawling, residual)
+        if moved is None or budget.crawls:
+            raise budget.stalled(residual)
         result.surface, begun = rolling.after(moved, direction.step, taken)
-        left = options.max_iterations if begun else left
+        if begun:
+            budget.renew()
         change = direction.multipliers - result.multipliers
         result.multipliers = result.multipliers + taken * change
-        # where energies differ by rounding only, no part of a step tells more than another
-        floor = residual <= FLOOR and size <= options.tolerance
-        full = (taken == 1.0 or floor) and not direction.shift
-        if full and not assembly.contact.settled_at(result.surface, near):
-            if assembly.contact.rounds > rounds:
-                # other multipliers of contact are another problem
-                left, rounds = options.max_iterations, assembly.contact.rounds
-        elif full and size <= options.tolerance:
+        if not _is_whole(direction, taken, residual, size <= options.tolerance):
+            result.surface = meridians.after(result.surface, size * taken)
+        elif not assembly.contact.settled_at(result.surface, near):
+            budget.next_round()
+        elif size <= options.tolerance:
             mended = meridians.of_converged(result.surface)
             if mended is None:
                 return
             result.surface = mended
-        elif full and residual <= FLOOR and size <= 1e-6:
+        elif residual <= FLOOR and size <= 1e-6:
             result.floor = residual  # of an ill-conditioned state, or of a tolerance below it
             return
         else:
             result.surface = meridians.after(result.surface, size * taken)
     raise _Stop(Status.MAX_ITER, f"{options.max_iterations} iterations did not converge")
+
+
+def _is_whole(direction: Direction, taken: float, residual: float, small: bool) -> bool:
+    """Whether a Newton step was taken as it is: where energies differ by rounding only, no part of
+    it tells more than another."""
+    return (taken == 1.0 or (residual <= FLOOR and small)) and not direction.shift
+
+
+class _Budget:
+    """Iterations that are left, renewed where another problem begins.
+
+    Parameters
+    ----------
+    assembly : whose multipliers of contact are updated in rounds, each another problem.
+    """
+
+    def __init__(self, assembly: Assembly, options: NewtonOptions) -> None:
+        self._contact, self._most = assembly.contact, options.max_iterations
+        self._iterations, self._rounds, self._crawling = options.max_iterations, 0, 0
+
+    @property
+    def left(self) -> bool:
+        """Whether another iteration may follow."""
+        return self._iterations > 0 and self._rounds < ROUNDS
+
+    @property
+    def crawls(self) -> bool:
+        """Whether a membrane in contact comes forward no more."""
+        return self._contact.lies and self._crawling >= PATIENCE
+
+    def spend(self, taken: float) -> None:
+        """One iteration, of whose step a part was taken."""
+        self._iterations -= 1
+        self._crawling = self._crawling + 1 if taken < CRAWL else 0
+
+    def renew(self) -> None:
+        """All iterations again."""
+        self._iterations = self._most
+
+    def next_round(self) -> None:
+        """All iterations again, if the multipliers of contact have been updated."""
+        if self._contact.rounds > self._rounds:
+            self._rounds = self._contact.rounds
+            self.renew()
+
+    def stalled(self, residual: float) -> _Stop:
+        """Why an iteration does not go on."""
+        if self.crawls:
+            return _Stop(Status.STALLED, f"{PATIENCE} steps in a row were cut short")
+        return _Stop(
+            Status.STALLED,
+            "no step along the Newton direction lowers the energy (relative residual "
+            f"{residual:.1e})",
+        )
+
+
+def _longest(size: float, near: float, limit: float) -> float:
+    """Longest part of a step of a size, and near solids: not beyond the limit, nor over more than
+    half a contact length there."""
+    part = min(1.0, limit / size) if size > 0 else 1.0
+    return min(part, 0.5 / near) if near > 0.5 else part
 
 
 class _Target:
@@ -257,16 +313,6 @@ def _sizes(assembly: Assembly, surface: Surface, displacement: Array) -> tuple[f
     if not np.isfinite(size):
         raise _Stop(Status.NONFINITE, "the Newton step is not finite")
     return size, assembly.near_contact(surface, displacement)
-
-
-def _stalled(assembly: Assembly, crawling: int, residual: float) -> _Stop:
-    """Why an iteration does not go on."""
-    if assembly.contact.lies and crawling >= PATIENCE:
-        return _Stop(Status.STALLED, f"{PATIENCE} steps in a row were cut short")
-    return _Stop(
-        Status.STALLED,
-        f"no step along the Newton direction lowers the energy (relative residual {residual:.1e})",
-    )
 
 
 def _best_balance(assembly: Assembly, surface: Surface) -> Array:

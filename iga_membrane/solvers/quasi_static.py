@@ -11,7 +11,7 @@ from ..assembly.lagrangian import Assembly
 from ..problems.scene import Ramp, Scene
 from ..status import Status
 from ..terms import Stabilization
-from .load_stepping import LoadStep
+from .load_path import LoadStep
 from .newton import NewtonOptions, NewtonResult, newton
 
 HALVINGS = 6

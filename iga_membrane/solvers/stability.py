@@ -102,13 +102,9 @@ def stability_of(
     blocks = blocks[: None if scope == "full" else 1]
     verdicts = [_verdict(state, blocks[0], neutral, np.inf)]
     verdicts += [_verdict(state, block, neutral, verdicts[0].smallest) for block in blocks[1:]]
-    index = sum(b.parity.alike * v.index for b, v in zip(blocks, verdicts, strict=True))
+    index = _total(blocks, [verdict.index for verdict in verdicts])
     worst = _worst(verdicts)
     block = blocks[worst]
-    held_index = None
-    if index and neutral.loose:
-        held = [_factor(state, b, neutral, neutral.loose)[2].index for b in blocks]
-        held_index = sum(b.parity.alike * k for b, k in zip(blocks, held, strict=True))
     mode = state.motion_of(block).displacement(verdicts[worst].mode)
     return Stability(
         index,
@@ -119,8 +115,19 @@ def stability_of(
         assembly.spines.model,
         block.parity.within,
         [text for block in blocks for text in neutral.pinned(block)],
-        held_index,
+        _held_index(state, blocks, neutral) if index and neutral.loose else None,
     )
+
+
+def _total(blocks: Sequence[Block], indices: Sequence[int]) -> int:
+    """Index of a body by those of its blocks."""
+    return sum(b.parity.alike * k for b, k in zip(blocks, indices, strict=True))
+
+
+def _held_index(state: SecondVariation, blocks: Sequence[Block], neutral: Neutral) -> int:
+    """Index of a droplet if its centroid were held where it is loose."""
+    held = [_factor(state, block, neutral, neutral.loose)[2].index for block in blocks]
+    return _total(blocks, held)
 
 
 def _worst(verdicts: Sequence[Eigenpair]) -> int:

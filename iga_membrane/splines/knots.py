@@ -70,8 +70,26 @@ def check_knots(knots: ArrayLike, degree: int, continuity: int = 1) -> Array:
         With the index of the first bad knot: not finite, unsorted, too few, not clamped, repeated
         beyond the degree, or an interior knot smoother than asked is missing ("C1 needed").
     """
-    t = np.array(knots, float)
-    p = degree
+    t, p = np.array(knots, float), degree
+    _check_order(t, p)
+    values, first, counts = np.unique(t, return_index=True, return_counts=True)
+    for value, index, count in zip(values, first, counts, strict=True):
+        end = value in (t[0], t[-1])
+        if count > p + 1 or (count > p and not end):
+            raise SceneError(
+                f"knots[{index}] = {value:g} is repeated {count} times; at most "
+                f"{p + 1 if end else p} for degree {p}"
+            )
+        if not end and p - count < continuity:
+            raise SceneError(
+                f"knots[{index}] = {value:g} is repeated {count} times: the spline is C{p - count} "
+                f"there, C{continuity} needed; at most {p - continuity} for degree {p}"
+            )
+    return t
+
+
+def _check_order(t: Array, p: int) -> None:
+    """Refuse knots that are too few, not finite, unsorted or not clamped."""
     if t.ndim != 1 or t.size < 2 * (p + 1):
         raise SceneError(
             f"knots: {t.size} values are too few; degree {p} needs at least {2 * (p + 1)}"
@@ -91,20 +109,6 @@ def check_knots(knots: ArrayLike, degree: int, continuity: int = 1) -> Array:
                 f"knots[{index}] = {t[index]:g}: the first and the last {p + 1} knots must be "
                 f"equal for degree {p} (a clamped knot vector)"
             )
-    values, first, counts = np.unique(t, return_index=True, return_counts=True)
-    for value, index, count in zip(values, first, counts, strict=True):
-        end = value in (t[0], t[-1])
-        if count > p + 1 or (count > p and not end):
-            raise SceneError(
-                f"knots[{index}] = {value:g} is repeated {count} times; at most "
-                f"{p + 1 if end else p} for degree {p}"
-            )
-        if not end and p - count < continuity:
-            raise SceneError(
-                f"knots[{index}] = {value:g} is repeated {count} times: the spline is C{p - count} "
-                f"there, C{continuity} needed; at most {p - continuity} for degree {p}"
-            )
-    return t
 
 
 def greville(knots: Array, degree: int) -> Array:

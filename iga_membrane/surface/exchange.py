@@ -67,7 +67,7 @@ def to_geomdl(surface: Surface) -> Any:
     degree, rings closed by equal points. geomdl scales the
     parameters to [0, 1].
     """
-    NURBS, BSpline = (optional(f"geomdl.{name}", "to_geomdl") for name in ("NURBS", "BSpline"))
+    nurbs, bspline = (optional(f"geomdl.{name}", "to_geomdl") for name in ("NURBS", "BSpline"))
     space = surface.space
     weights, net = space.weights, surface.net
     knots = [basis.knots for basis in space.bases if basis.knots is not None]
@@ -75,7 +75,7 @@ def to_geomdl(surface: Surface) -> Any:
         net, w = _bezier_points(surface)
         knots = [_bezier_knots(basis) for basis in space.bases]
         weights = None if space.weights is None else w
-    made = BSpline.Surface() if weights is None else NURBS.Surface()
+    made = bspline.Surface() if weights is None else nurbs.Surface()
     made.degree_u, made.degree_v = (basis.degree for basis in space.bases)
     made.ctrlpts_size_u, made.ctrlpts_size_v = net.shape[:2]
     if weights is None:

@@ -10,7 +10,6 @@ from .sphere_wetting import SphereContactLine
 from .stabilization import Stabilization
 from .tension import SurfaceTension
 from .term import AreaTerm, BodyDensity, BodyTerm, Constraint, LineTerm, Scale, Term, WettingLine
-from .terms import Terms
 from .trimmed import TrimmedContactLine
 from .volume import Centroid, Pressure, Volume
 
@@ -35,7 +34,6 @@ __all__ = [
     "Stabilization",
     "SurfaceTension",
     "Term",
-    "Terms",
     "TrimmedContactLine",
     "Volume",
     "WettingLine",

@@ -28,7 +28,8 @@ from ..solids import Sphere
 from ..splines import EdgeTable
 from ..surface.ring import rational_matrix
 from ..surface.surface import Surface
-from ..terms import BodyDensity, NormalLineLoad, Terms, WettingLine
+from ..terms import BodyDensity, NormalLineLoad, WettingLine
+from ..terms.terms import Terms
 from .balance import Loads, line_balance
 from .evidence import Audit
 from .own_lines import nodal_forces, outward_pull

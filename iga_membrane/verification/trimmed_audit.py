@@ -7,12 +7,13 @@ dual tangents and line elements.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..assembly.lagrangian import TINY
-from ..contact.unfitted import EXTRA, Unfitted
+from ..contact.unfitted import EXTRA, Outside, Unfitted
 from ..deadline import check_time
 from ..dofs.spines import Motion
 from ..problems.scene import Scene
@@ -97,14 +98,7 @@ def trimmed_audit(
         size = max(abs(loads.push), abs(pulls[1]), TINY)
         return replace(found, force=abs(loads.push + pulls[1]) / size)
     gradient = np.array(body.gradient)
-    push = density.sum(axis=(0, 1))
-    for axis in range(3):
-        push[axis] += unfitted.cap(
-            surface.points,
-            lambda x, n, which, k=axis: (body.constant + x @ gradient) * n[..., k],  # type: ignore[misc]
-            outside,
-        )
-    push = sector.copies * push
+    push = sector.copies * (density.sum(axis=(0, 1)) + _pressed(unfitted, surface, body, outside))
     below = 0.0
     if foot is not None and rim is not None:
         on_plane = vertical_forces(rim, body, tension, _young(foot))
@@ -116,6 +110,17 @@ def trimmed_audit(
     loose = [axis not in sector.mirrored for axis in "xy"]
     sideways = float(np.hypot(*(missing[:2] * loose))) / size if any(loose) else None
     return replace(found, force=abs(float(missing[2])) / size, sideways=sideways)
+
+
+def _pressed(unfitted: Unfitted, surface: Surface, body: BodyDensity, outside: Outside) -> Array:
+    """(3,) force of the liquid on the wetted surfaces of the solids (one sector)."""
+
+    def push(x: Array, n: Array, which: Index, k: int) -> Array:
+        return np.asarray(body.at(x) * n[..., k])
+
+    return np.array(
+        [unfitted.cap(surface.points, partial(push, k=axis), outside) for axis in range(3)]
+    )
 
 
 def _conormals(line: Line) -> tuple[Array, Array]:

@@ -50,12 +50,7 @@ def animate(
     path = Path(path)
     if path.suffix not in ("", ".gif"):
         raise OutputError(f"{path}: must end in .gif, or be a folder for frames")
-    found = list(solutions.solutions if isinstance(solutions, Walk) else solutions)
-    if not found:
-        raise SceneError("solutions = []: at least one is needed")
-    texts = [""] * len(found)
-    if isinstance(solutions, Walk):
-        texts = [f"{solutions.parameter} = {value:.4g}" for value in solutions.values]
+    found, texts = _told(solutions)
     options = {"color": "none", "size": (800, 600), **options}
     if options["color"] != "none":
         options.setdefault("limits", _limits(found, options["color"]))
@@ -65,9 +60,7 @@ def animate(
     zoom = options.pop("zoom", 1.0)
     folder = path if path.suffix == "" else None
     if folder is not None:
-        check_folder(folder)
-        for frame in folder.glob(FRAME.format("[0-9]" * 4)):
-            remove(frame)  # of an older path, which may have been longer
+        _empty(folder)
     with tempfile.TemporaryDirectory() as scratch:
         frames = []
         for k, (solution, (_, length), text) in enumerate(zip(found, boxes, texts, strict=True)):
@@ -79,6 +72,23 @@ def animate(
             write_whole(path, lambda file: first.save(
                 file, save_all=True, append_images=others, duration=1e3 * seconds, loop=0
             ))  # fmt: skip
+
+
+def _told(solutions: Walk | Sequence[Solution]) -> tuple[list[Solution], list[str]]:
+    """The solutions of a film, and a line of text for each."""
+    if isinstance(solutions, Walk):
+        texts = [f"{solutions.parameter} = {value:.4g}" for value in solutions.values]
+        return list(solutions.solutions), texts
+    if not solutions:
+        raise SceneError("solutions = []: at least one is needed")
+    return list(solutions), [""] * len(solutions)
+
+
+def _empty(folder: Path) -> None:
+    """Make room for frames: those of an older path may be more."""
+    check_folder(folder)
+    for frame in folder.glob(FRAME.format("[0-9]" * 4)):
+        remove(frame)
 
 
 def _with_text(frame: Path, text: str) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from functools import partial
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -83,11 +83,15 @@ def plot_curves(
     if by is not None:
         axes.legend(title=_label(by), title_fontsize=8, frameon=False, fontsize=8)
     if len(names) > 1:
-        styles = [axes.plot([], [], ls, color="C0" if by is None else "black")[0]
-                  for ls in STYLES[: len(names)]]  # fmt: skip
-        made.legend(styles, [_label(n) for n in names], loc="outside upper center",
-                    ncols=2, frameon=False, fontsize=8)  # fmt: skip
+        _tell_styles(made, axes, names, "C0" if by is None else "black")
     write_figure(made, path)
+
+
+def _tell_styles(made: Any, axes: Any, names: Sequence[str], color: str) -> None:
+    """A legend of the styles of several columns."""
+    styles = [axes.plot([], [], ls, color=color)[0] for ls in STYLES[: len(names)]]
+    told = [_label(name) for name in names]
+    made.legend(styles, told, loc="outside upper center", ncols=2, frameon=False, fontsize=8)
 
 
 @checked()

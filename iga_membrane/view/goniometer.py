@@ -13,6 +13,7 @@ from ..arrays import Array
 from ..driver.lines import contact_lines
 from ..driver.solution import Solution
 from ..errors import SceneError
+from ..problems.scene import Scene
 from ..results.apparent import profile
 from ..results.measures import own_asperity
 from ..solids import Plane, Sphere, SphereLattice, Spheres
@@ -56,17 +57,7 @@ def plot_side(
         If the file cannot be written, or matplotlib is not installed.
     """
     scene = solution.scene
-    if scene.kind != "sessile_droplet":
-        raise SceneError("plot_side: shows droplets on a substrate; take plot or plot_section")
-    if not isinstance(scene.substrate, (Plane, Sphere, SphereLattice, Spheres)):
-        raise SceneError(
-            f"plot_side: what a goniometer sees on {type(scene.substrate).__name__} is not known; "
-            "take plot or plot_section"
-        )
-    alone = own_asperity(scene) is not None
-    rough = isinstance(scene.substrate, (SphereLattice, Spheres)) and not alone
-    if rough and scene.lateral_load:
-        raise SceneError("plot_side: a leaning droplet on asperities has no apparent angle")
+    rough = _is_rough(scene)
     made, axes = figure(path)
     turn = np.radians(azimuth)
     right = np.array([np.cos(turn), np.sin(turn), 0.0])
@@ -104,6 +95,28 @@ def plot_side(
     axes.set_aspect("equal")
     write_figure(made, path)
     return sides[0].angle, sides[1].angle
+
+
+def _is_rough(scene: Scene) -> bool:
+    """Whether a droplet stands on several asperities.
+
+    Raises
+    ------
+    SceneError
+        A scene that a goniometer does not measure.
+    """
+    if scene.kind != "sessile_droplet":
+        raise SceneError("plot_side: shows droplets on a substrate; take plot or plot_section")
+    if not isinstance(scene.substrate, (Plane, Sphere, SphereLattice, Spheres)):
+        raise SceneError(
+            f"plot_side: what a goniometer sees on {type(scene.substrate).__name__} is not known; "
+            "take plot or plot_section"
+        )
+    alone = own_asperity(scene) is not None
+    rough = isinstance(scene.substrate, (SphereLattice, Spheres)) and not alone
+    if rough and scene.lateral_load:
+        raise SceneError("plot_side: a leaning droplet on asperities has no apparent angle")
+    return rough
 
 
 def _shadow(axes: Any, triangles: Array) -> None:

@@ -134,17 +134,22 @@ def plot(
     if forces:
         aside = np.cross(axes[:, 2], eye)
         add_forces(plotter, pv, solution, aside / max(float(np.linalg.norm(aside)), 1e-12))
-    up = axes[:, 1] if view == "top" else axes[:, 2]
-    plotter.camera_position = [middle + DISTANCE * span / zoom * eye, middle, up]
-    if view in PARALLEL:
-        plotter.enable_parallel_projection()
-        plotter.camera.parallel_scale = HALF_HEIGHT * span / zoom
+    _look(plotter, view, axes, eye, middle, span / zoom)
     plotter.enable_anti_aliasing("ssaa")
     if path is None:
         return plotter.show()
     plotter.screenshot(str(path))
     plotter.close()
     return None
+
+
+def _look(plotter: Any, view: View, axes: Array, eye: Array, middle: Array, span: float) -> None:
+    """Place the camera so that it sees a span round the middle."""
+    up = axes[:, 1] if view == "top" else axes[:, 2]
+    plotter.camera_position = [middle + DISTANCE * span * eye, middle, up]
+    if view in PARALLEL:
+        plotter.enable_parallel_projection()
+        plotter.camera.parallel_scale = HALF_HEIGHT * span
 
 
 def _eye(view: View, axes: Array) -> Array:

@@ -211,7 +211,7 @@ NO_ARGUMENTS = {
 
 
 def bracket():
-    from iga_membrane.solvers.load_stepping import Bracket
+    from iga_membrane.solvers.load_path import Bracket
 
     return Bracket("p", 0.0, 1.0, 0, 1)
 

@@ -62,7 +62,7 @@ def test_an_interrupted_path_goes_on_to_the_same_end(tmp_path, count):
 
 
 def test_only_converged_steps_are_kept(tmp_path, monkeypatch):
-    from iga_membrane.solvers import load_stepping as module
+    from iga_membrane.solvers import load_path as module
 
     options = iga.SolverOptions(checkpoint=tmp_path / "state.npz")
     newton, calls = module.newton, []
