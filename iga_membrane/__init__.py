@@ -37,6 +37,7 @@ _HOME = {
     "problems.sheet": ("liquid_sheet",),
     "problems.osman_sauer": ("WholeMembrane",),
     "io.scene_file": ("load_scene", "read_scene"),
+    "io.schema": ("scene_schema",),
     "solvers.options": ("SolverOptions",),
     "status": ("Status",),
     "driver.solution": ("Solution",),

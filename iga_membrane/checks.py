@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import math
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
 from numbers import Integral, Real
@@ -197,19 +197,21 @@ def words(*allowed: str) -> Rule:
 
 
 def either(*rules: Rule) -> Rule:
-    """One of several rules; a wrong value is told all of them."""
+    """The rule that a value keeps one of several rules."""
+    return partial(first_of, rules=rules)
 
-    def rule(field: str, value: Any) -> Any:
-        errors = []
-        for one in rules:
-            try:
-                return one(field, value)
-            except SceneError as error:
-                errors.append(str(error))
-        first, *others = errors
-        raise SceneError(", or ".join([first, *(each.partition(": ")[2] for each in others)]))
 
-    return rule
+def first_of(field: str, value: Any, *, rules: Sequence[Rule]) -> Any:
+    """What the first rule makes of a value that does not refuse it; a value that all of them refuse
+    is told all."""
+    errors = []
+    for one in rules:
+        try:
+            return one(field, value)
+        except SceneError as error:
+            errors.append(str(error))
+    first, *others = errors
+    raise SceneError(", or ".join([first, *(each.partition(": ")[2] for each in others)]))
 
 
 def contact_angle(field: str, value: Any) -> float:

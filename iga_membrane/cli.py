@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import logging
 import os
 import sys
@@ -235,6 +236,13 @@ def _say(text: str) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _schema(given: argparse.Namespace) -> int:
+    from .io.schema import scene_schema
+
+    print(json.dumps(scene_schema(), indent=2))
+    return SOLVED
+
+
 def _command(commands: Any, name: str, run: Callable[[Any], int], text: str) -> Any:
     command = commands.add_parser(name, help=text)
     command.set_defaults(run=run)
@@ -284,4 +292,5 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("files", nargs="+", metavar="FILE",
                          help="by its ending .vtu, .stl, .obj, .ply, .geomdl.json, .lines.csv, "
                          ".forces.csv, .json, .npz or .png")  # fmt: skip
+    _command(commands, "schema", _schema, "print the JSON schema of scene files")
     return parser

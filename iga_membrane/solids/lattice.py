@@ -256,4 +256,4 @@ def plane_below(points: Array, height: float) -> Nearest:
     """The plane z = height as nearest surface."""
     up = np.broadcast_to([0.0, 0.0, 1.0], points.shape)
     shape = points.shape[:-1]
-    return Nearest(points[..., 2] - height, up, np.zeros(shape), np.full(shape, -1))
+    return Nearest.computed(points[..., 2] - height, up, np.zeros(shape), np.full(shape, -1))

@@ -37,10 +37,21 @@ class Nearest:
     which: Index
     ridge: Array | None = None
 
+    @classmethod
+    def computed(
+        cls, gap: Array, normal: Array, bend: Array, which: Index, ridge: Array | None = None
+    ) -> Nearest:
+        """What this package has computed itself: made in the innermost loops, it is not checked."""
+        found = object.__new__(cls)
+        vars(found).update(gap=gap, normal=normal, bend=bend, which=which, ridge=ridge)
+        return found
+
     def part(self, some: Mask) -> Nearest:
         """At some of the points."""
         ridge = None if self.ridge is None else self.ridge[some]
-        return Nearest(self.gap[some], self.normal[some], self.bend[some], self.which[some], ridge)
+        return Nearest.computed(
+            self.gap[some], self.normal[some], self.bend[some], self.which[some], ridge
+        )
 
     def hessian(self) -> Array:
         """(..., 3, 3) second derivative of the gap."""
@@ -92,13 +103,13 @@ def nearest_of_balls(points: Array, centers: Array, radii: Array, which: Index) 
     distance = np.sqrt(np.einsum("...i,...i->...", away, away))
     with np.errstate(invalid="ignore", divide="ignore"):
         normal, bend = away / distance[..., None], 1.0 / distance
-    return Nearest(distance - radii, normal, bend, which)
+    return Nearest.computed(distance - radii, normal, bend, which)
 
 
 def closer(first: Nearest, second: Nearest) -> Nearest:
     """The nearer of two surfaces at each point."""
     wins = second.gap < first.gap
-    return Nearest(
+    return Nearest.computed(
         np.where(wins, second.gap, first.gap),
         np.where(wins[..., None], second.normal, first.normal),
         np.where(wins, second.bend, first.bend),

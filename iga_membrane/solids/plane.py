@@ -65,7 +65,7 @@ class Plane:
         """Gap and its derivatives; a plane has number -1."""
         normal = np.broadcast_to(self.unit_normal(), points.shape)
         shape = points.shape[:-1]
-        return Nearest(self.gap(points), normal, np.zeros(shape), np.full(shape, -1))
+        return Nearest.computed(self.gap(points), normal, np.zeros(shape), np.full(shape, -1))
 
     @property
     def scale(self) -> float:

@@ -187,7 +187,7 @@ class LocalSolid:
         at = nearest_of(self.solid, self.view.to_world(points))
         unit, axes = self.view.length, self.view.axes
         ridge = None if at.ridge is None else at.ridge @ axes * np.sqrt(unit)
-        return Nearest(at.gap / unit, at.normal @ axes, at.bend * unit, at.which, ridge)
+        return Nearest.computed(at.gap / unit, at.normal @ axes, at.bend * unit, at.which, ridge)
 
     def center_of(self, which: Index) -> Array:
         return self.view.to_local(self.solid.center_of(which))

@@ -206,6 +206,7 @@ NO_ARGUMENTS = {
     "AreaTerm", "BodyTerm", "Constraint", "GapTerm", "LineTerm", "Term", "WettingLine",  # abstract
     "Solid",  # a protocol
     "Status",  # an enumeration
+    "scene_schema",
     "GeometryError", "OutputError", "SceneError", "SolveError", "StateError",  # carry any message
 }  # fmt: skip
 
