@@ -6,6 +6,7 @@ kinds of scenes allow is narrowed where they are made.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -13,6 +14,7 @@ from .checks import (
     NOT_NEGATIVE,
     POSITIVE,
     Rule,
+    contact_angle,
     direction,
     either,
     flag,
@@ -24,6 +26,7 @@ from .checks import (
     pair,
     refusal,
     state_file,
+    suggestion,
     text,
     vector,
     wet_angle,
@@ -52,13 +55,35 @@ def path_values(field: str, values: Any) -> tuple[float, ...]:
     return checked
 
 
+def table(field: str, value: Any, *, fields: Mapping[str, Rule]) -> Any:
+    """A table of known fields that keep their rules."""
+    if not isinstance(value, Mapping):
+        raise refusal(field, value, "must be a table of keys and values")
+    for key in value:
+        if key not in fields:
+            raise SceneError(
+                f"{field}.{key}: unknown key{suggestion(key, fields)} (known: {', '.join(fields)})"
+            )
+    return {key: fields[key](f"{field}.{key}", item) for key, item in value.items()}
+
+
+WETTABILITY: dict[str, Rule] = {
+    "kind": words("stripes", "patch"),
+    "angles": partial(items, each=contact_angle, least=2),
+    "period": POSITIVE,
+    "radius": POSITIVE,
+    "border": POSITIVE,
+}
+"""Fields of a pattern of contact angles."""
 FIELDS: dict[str, Rule] = {
     "liquid.surface_tension": POSITIVE,
     "liquid.density": NOT_NEGATIVE,
     "liquid.volume": POSITIVE,
     "gravity.acceleration": NOT_NEGATIVE,
     "gravity.direction": direction,
-    "substrate.kind": words("plane", "sphere", "sphere_lattice", "spheres", "none"),
+    "substrate.kind": words(
+        "plane", "sphere", "sphere_lattice", "spheres", "height_map", "cylinder", "none"
+    ),
     "substrate.contact_angle": partial(one_or_more, each=wet_angle),
     "substrate.radius": POSITIVE,
     "substrate.spacing": POSITIVE,
@@ -67,6 +92,18 @@ FIELDS: dict[str, Rule] = {
     "substrate.centers": partial(items, each=vector, least=1),
     "substrate.radii": partial(one_or_more, each=POSITIVE),
     "substrate.base": number,
+    "substrate.shape": words("bump", "egg_carton", "grooves", "pillars", "two_level", "grid"),
+    "substrate.amplitude": number,
+    "substrate.period": POSITIVE,
+    "substrate.height": number,
+    "substrate.width": POSITIVE,
+    "substrate.edge": POSITIVE,
+    "substrate.amplitudes": partial(items, each=number, least=1),
+    "substrate.periods": partial(items, each=POSITIVE, least=1),
+    "substrate.file": text,
+    "substrate.scale": POSITIVE,
+    "substrate.axis": direction,
+    "substrate.wettability": partial(table, fields=WETTABILITY),
     "particle.radius": POSITIVE,
     "particle.center": vector,
     "particle.density": NOT_NEGATIVE,

@@ -63,4 +63,7 @@ def _passing(scene: Scene, line: TrimmedContactLine, surface: Surface, rows: Row
     element = float(np.median(lengths[close])) / line.solid.scale if close.any() else 1.0
     images = mirrors(scene.sector)
     own, size = rows.spines.unknowns, rows.size
-    return Unfitted(line, surface.space, table, elements, portion, images, element, own, size)
+    smooth = not np.isfinite(line.solid.radius_of(beside.which)).all()
+    return Unfitted(
+        line, surface.space, table, elements, portion, images, element, own, size, smooth
+    )

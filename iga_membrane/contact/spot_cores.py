@@ -63,7 +63,7 @@ class Cores:
             outer |= np.bincount(place, outer)[place] == 0
         radii: Array = np.full(len(numbers), np.inf)
         np.minimum.at(radii, place[outer], np.linalg.norm(away[outer], axis=1))
-        psi = np.pi - np.arccos(term.cosine(numbers))
+        psi = np.pi - np.arccos(term.cosine(middles, numbers)[0])
         again = 0.5 * psi * solid.radius_of(numbers)
         # on a particle, which may stand anywhere, a line has farther to go than on an asperity
         least = np.where(term.particle(numbers) >= 0, LOOSE, CORE[0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeGuard
 
 import numpy as np
@@ -16,7 +16,7 @@ from ..dofs.spines import Motion
 from ..linalg.bordered import Matrix
 from ..problems.scene import Scene
 from ..solids import Solid
-from ..splines import LineTable, Space, Table, cut, faces_between
+from ..splines import LineTable, Space, Table, cut, faces_between, folded_pairs
 from ..surface.bezier import BezierPatches, bezier_net
 from ..surface.surface import Surface
 from ..terms import BodyDensity, TrimmedContactLine
@@ -32,6 +32,9 @@ from .unfitted_patches import Spots, patches_of
 
 ON_LINE = 1e-7
 """Gap over the contact length that points of a contact line may have."""
+SMOOTH = 4.0
+"""Factor of the ghost penalty on solids without an inside, over that on asperities: on egg cartons
+and grooves 7 iterations instead of 20 to 35, for 6e-5 of the wetted area (10: as many, 2e-4)."""
 EXTRA = 4
 """Gauss points beyond the degree in cut elements: the Hessian is that of the exact integrals."""
 
@@ -46,6 +49,7 @@ class Outside:
     touched : (elements,) whether an element is cut.
     area : functions in the outer parts of cut elements, by pieces.
     line, ends : functions on contact lines and at the ends of their pieces.
+    lines : control points with the geometry on their lines, where it has been asked for.
     """
 
     share: Array
@@ -53,6 +57,7 @@ class Outside:
     area: Table
     line: LineTable
     ends: LineTable
+    lines: list[tuple[Array, Line]] = field(default_factory=list)
 
 
 class Unfitted(ContactModel):
@@ -65,6 +70,7 @@ class Unfitted(ContactModel):
     images : matrices (3, 3) that carry the sector to each of its images.
     element : size of the elements at the solid over the contact length.
     unknowns : (rows,) unknown of each control point, -1 for none; size : their number.
+    smooth : whether the solid is a surface without an inside, no small body.
     """
 
     passes = True
@@ -81,14 +87,17 @@ class Unfitted(ContactModel):
         element: float,
         unknowns: Index,
         size: int,
+        smooth: bool,
     ) -> None:
         self.term, self.space, self.table = term, space, table
         self.elements, self.portion = elements, portion
         self._images, self._element = images, element
-        self._faces = faces_between(space, elements)
+        self._smooth = smooth
+        self._faces, self._folds = faces_between(space, elements), folded_pairs(space, elements)
         own = unknowns[: space.count]
         self.ties = Ties(space, elements, portion, self._faces, own, size)
         self._points = space.degree + EXTRA
+        self.firm(1.0)
         self._known: list[tuple[Array, Outside]] = []
         self._cores = Cores.none()
         self._restart()
@@ -115,7 +124,7 @@ class Unfitted(ContactModel):
         return self.wetting(points)[0]
 
     def firm(self, factor: float) -> None:
-        self.ties.firmness = factor
+        self.ties.firmness = factor * (SMOOTH if self._smooth else 1.0)
 
     def _restart(self) -> None:
         """Free to choose again what is tied; spots are where they were."""
@@ -155,7 +164,13 @@ class Unfitted(ContactModel):
 
     def on_line(self, points: Array, outside: Outside | None = None) -> Line:
         """Geometry on the contact lines, with other quadrature if another cut is given."""
-        return on_line(self.term, (outside or self.outside(points)).line, points)
+        outside = outside or self.outside(points)
+        for known, found in outside.lines:
+            if known is points:
+                return found
+        found = on_line(self.term, outside.line, points)
+        outside.lines[:] = [(points, found)]
+        return found
 
     def on_ends(self, points: Array) -> Line:
         """Geometry at the ends of their pieces."""
@@ -223,6 +238,12 @@ class Unfitted(ContactModel):
         own = set(self.term.particle(which).tolist())
         return [k for k in range(particles) if k not in own]
 
+    def objection(self, points: Array) -> str | None:
+        known = getattr(self.solid, "knows", None)
+        if known is None or known(self.on_line(points).x).all():
+            return None
+        return "the contact line has left the measured map of the substrate: give a larger one"
+
     def behind(self, table: Table, surface: Surface) -> Array:
         at = element_points(table, surface.points)
         lines = self.on_line(surface.points).at.which
@@ -237,13 +258,13 @@ class Unfitted(ContactModel):
     def wetting(self, points: Array) -> tuple[float, float]:
         """Energy of the wetted surface and its area."""
         line, term = self.on_line(points), self.term
-        area = wet_integral(line, term, lambda x, normal, which: np.ones(which.shape))
-        cosine = line.cosine[:, :1].sum(axis=1)
-        return float(-term.gamma * (cosine * area).sum()), float(area.sum())
+        area = wet_integral(line, lambda x, normal, which: np.ones(which.shape))
+        gain = wet_integral(line, lambda x, normal, which: term.cosine(x, which)[0])
+        return float(-term.gamma * gain.sum()), float(area.sum())
 
     def cap(self, points: Array, density: CapDensity, outside: Outside | None = None) -> float:
         """Integral over the wetted surface."""
-        return float(wet_integral(self.on_line(points, outside), self.term, density).sum())
+        return float(wet_integral(self.on_line(points, outside), density).sum())
 
     def under(self, points: Array, body: BodyDensity, outside: Outside | None = None) -> float:
         return self.cap(points, lambda x, n, which: -flux(body, x) * n[..., 2], outside)
@@ -306,7 +327,12 @@ class Unfitted(ContactModel):
 
     def _find_cores(self, points: Array) -> None:
         """Know the wetted spots of a state, for the next ones."""
-        self._cores = Cores.inside(self.on_line(points), self.term, self._images)
+        # where a solid has no inside, the membrane cannot come out of it again
+        self._cores = (
+            Cores.none()
+            if self._smooth
+            else Cores.inside(self.on_line(points), self.term, self._images)
+        )
         self._known.clear()
 
     def _connected(self, active: Mask) -> Mask:
@@ -314,9 +340,10 @@ class Unfitted(ContactModel):
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
-        f = self._faces.part(active[self._faces.first] & active[self._faces.second])
-        count = len(active)
-        graph = coo_array((np.ones(len(f.first)), (f.first, f.second)), (count, count))
+        pairs = [(self._faces.first, self._faces.second), self._folds]
+        first, second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))
+        both, count = active[first] & active[second], len(active)
+        graph = coo_array((np.ones(both.sum()), (first[both], second[both])), (count, count))
         _, label = connected_components(graph, directed=False)
         largest = np.bincount(label[active]).argmax() if active.any() else -1
         return np.asarray(active & (label == largest))

@@ -29,7 +29,7 @@ class Spots:
 
     def cap(self, density: CapDensity) -> Array:
         """(pieces,) integrals over the wetted surface of one sector."""
-        return wet_integral(self.line, self.term, density)
+        return wet_integral(self.line, density)
 
     def total(self, values: Array) -> Array:
         """(k,) sums of pieces (pieces,) on each sphere."""

@@ -13,6 +13,7 @@ from ..contact.unfitted import is_unfitted
 from ..dofs.symmetry import mirrors
 from ..problems.scene import Scene
 from ..results.contact_line import ContactLine, contact_line, trimmed_line
+from ..results.line_chains import closed_lines, seen_once
 from ..results.measures import own_asperity
 from ..surface.surface import Surface
 from .solution import Solution
@@ -74,16 +75,26 @@ def _inside(scene: Scene, surface: Surface) -> list[LineOnSolid]:
     if not is_unfitted(unfitted):
         return []
     whole = trimmed_line(unfitted, surface, mirrors(scene.sector))
+    line, images = unfitted.on_line(surface.points), mirrors(scene.sector)
+    along = line.x.shape[1]
+    places = surface.points[line.table.functions].mean(axis=1)
+    kept, times = seen_once(np.concatenate([places @ m for m in images]), len(images))
+    numbers = (kept[:, None] * along + np.arange(along)).ravel()
+    whole = _part(whole, numbers)
+    whole = replace(whole, arc=whole.arc * np.repeat(times, along))
     owner = unfitted.solid.nearest(whole.position).which
-    found = []
-    for which in np.unique(owner):
-        line = _part(whole, np.flatnonzero(owner == which))
-        axis = unfitted.term.axis(np.array([which]))[0]
-        away = line.position - line.arc @ line.position / line.arc.sum()
-        first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-        turn = np.arctan2(away @ np.cross(axis, first), away @ first)
-        found.append(LineOnSolid(int(which), _part(line, np.argsort(turn))))
-    return found
+    found = [
+        LineOnSolid(int(owner[some[0]]), _counterclockwise(_part(whole, some)))
+        for some in closed_lines(whole.position.reshape(-1, along, 3))
+    ]
+    return sorted(found, key=lambda each: each.solid)
+
+
+def _counterclockwise(line: ContactLine) -> ContactLine:
+    """The line in the order of its tangents."""
+    steps = np.roll(line.position, -1, axis=0) - line.position
+    forward = np.einsum("ki,ki->", steps, line.tangent) >= 0.0
+    return line if forward else _part(line, np.arange(len(line.arc))[::-1])
 
 
 def _part(line: ContactLine, some: Index) -> ContactLine:

@@ -14,6 +14,7 @@ from ..arrays import Array
 from ..dofs.boundary_conditions import Model
 from ..errors import SceneError
 from ..solids import Solid, Sphere, Spheres
+from ..solids.wettability import cosine_of, varies
 from ..splines import Space, pillow_space
 from ..surface.closed import Meridian, Stretch, closed_surface, inverse_lemniscate_sine
 from ..surface.surface import Surface
@@ -257,6 +258,9 @@ def smallest_model(
     def mirrored(image: Array) -> bool:
         there = solid.nearest(image)
         off = np.abs(there.gap - at.gap).max(initial=0.0)
+        if varies(solid.contact_angle):
+            wet = [cosine_of(solid.contact_angle, x, at.which)[0] for x in (sample, image)]
+            off = max(off, np.abs(wet[1] - wet[0]).max(initial=0.0))
         if isinstance(solid, Spheres):
             which = there.which
             known = np.column_stack([solid.radius_of(which), solid.angle_of(which)])

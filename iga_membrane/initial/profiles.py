@@ -15,9 +15,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import GeometryError, SceneError
+from ..quadrature import gauss
 from ..solids import Solid, Sphere
 from ..splines import Space
-from ..splines.quadrature import gauss
 from ..surface.surface import Surface
 
 STEEPEST = 171.0

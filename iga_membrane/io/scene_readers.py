@@ -15,8 +15,9 @@ from ..problems.droplet import sessile_droplet
 from ..problems.film import film_between_rings
 from ..problems.scene import Scene
 from ..problems.sheet import liquid_sheet
-from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids import Sphere, Spheres
 from .scene_keys import later, membrane_of
+from .substrates import substrate_of
 
 Tables = dict[str, Mapping[str, Any]]
 
@@ -39,7 +40,7 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
                          ("substrate.contact_angle", substrate)):  # fmt: skip
         if field.rpartition(".")[2] not in table:
             raise SceneError(f"{field}: missing; an asperity cell needs it")
-    solid = _substrate(dict(substrate) | {"kind": substrate.get("kind", "sphere")})
+    solid = substrate_of(dict(substrate) | {"kind": substrate.get("kind", "sphere")})
     if isinstance(solid, Spheres) and len(solid.centers) == 1 and solid.base is None:
         x, y, z = (float(c) for c in solid.centers[0])
         angle, radius = float(np.ravel(solid.contact_angle)[0]), float(np.ravel(solid.radii)[0])
@@ -64,14 +65,14 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, substrate = tables["liquid"], tables["substrate"]
     needed = [("liquid.volume", liquid)]
-    if substrate.get("kind") != "none":
+    if substrate.get("kind") != "none" and "wettability" not in substrate:
         needed.append(("substrate.contact_angle", substrate))
     for field, table in needed:
         if field.split(".")[1] not in table:
             raise SceneError(f"{field}: missing; a sessile droplet needs it")
     membrane = membrane_of(tables["solver"])
     return sessile_droplet(
-        _substrate(substrate),
+        substrate_of(substrate),
         volume=liquid["volume"],
         liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
         gravity=_gravity(tables["gravity"]),
@@ -95,70 +96,6 @@ def _start(table: Mapping[str, Any]) -> str | None:
     """A word; a state file is read by the solver."""
     start = table.get("start", "auto")
     return str(start) if start in STARTS else None
-
-
-def _substrate(table: Mapping[str, Any]) -> Plane | Sphere | SphereLattice | Spheres | None:
-    """The solid under a droplet, None for a free one; a sphere or a lattice has its tops at
-    z = 0."""
-    kind = table.get("kind", "plane")
-    _check_substrate(table, kind)
-    if kind == "none":
-        return None
-    angle = table["contact_angle"]
-    if kind == "plane":
-        return Plane(angle)
-    if kind == "sphere":
-        x, y = _offset(table)
-        return Sphere(angle, table["radius"], (x, y, -table["radius"]))
-    if kind == "sphere_lattice":
-        return SphereLattice(
-            angle,
-            table["radius"],
-            table["spacing"],
-            table.get("arrangement", "square"),
-            _offset(table),
-            table.get("base"),
-        )
-    return Spheres(angle, table["centers"], table["radii"], table.get("base"))
-
-
-def _check_substrate(table: Mapping[str, Any], kind: str) -> None:
-    """Refuse fields that a kind of substrate does not have, or lacks."""
-    allowed = _SUBSTRATE_KEYS[kind]
-    for key in table:
-        if key != "kind" and not allowed:
-            raise SceneError(f'substrate.{key}: substrate.kind = "none" has no fields; remove it')
-        if key != "kind" and key not in allowed:
-            raise SceneError(
-                f"substrate.{key}: a {kind} has no such field, only {', '.join(allowed)}; remove "
-                f"it or choose another substrate.kind ({', '.join(_SUBSTRATE_KEYS)})"
-            )
-    for key in _NEEDED[kind]:
-        if key not in table:
-            raise SceneError(f"substrate.{key}: missing; a {kind} needs it")
-    angle = table.get("contact_angle")
-    if isinstance(angle, list) and kind != "spheres":
-        raise SceneError(f"substrate.contact_angle = {angle}: one number is needed here")
-
-
-def _offset(table: Mapping[str, Any]) -> tuple[float, float]:
-    x, y = table.get("offset", (0.0, 0.0))
-    return float(x), float(y)
-
-
-_SUBSTRATE_KEYS: dict[str, tuple[str, ...]] = {
-    "none": (),
-    "plane": ("contact_angle",),
-    "sphere": ("contact_angle", "radius", "offset"),
-    "sphere_lattice": ("contact_angle", "radius", "spacing", "arrangement", "offset", "base"),
-    "spheres": ("contact_angle", "centers", "radii", "base"),
-}
-_NEEDED = {
-    "plane": (),
-    "sphere": ("radius",),
-    "sphere_lattice": ("radius", "spacing"),
-    "spheres": ("centers", "radii"),
-}
 
 
 def _film(data: Mapping[str, Any], tables: Tables) -> Scene:

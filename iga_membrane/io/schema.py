@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any
 
 from .. import checks
-from ..checks import Rule
-from ..fields import FIELDS, LONGEST_PATH, keys_of, path_values
+from ..checks import SMALLEST_ANGLE, Rule
+from ..fields import FIELDS, LONGEST_PATH, keys_of, path_values, table
 from .scene_file import SCENES, SCHEMA
 from .scene_keys import TABLES
 from .scene_readers import FOREIGN
@@ -51,7 +51,11 @@ def scene_schema() -> Schema:
 
 
 def _table(name: str) -> Schema:
-    keys = {key: schema_of(FIELDS[f"{name}.{key}"]) for key in keys_of(name)}
+    return _object({key: FIELDS[f"{name}.{key}"] for key in keys_of(name)})
+
+
+def _object(rules: Mapping[str, Rule]) -> Schema:
+    keys = {key: schema_of(rule) for key, rule in rules.items()}
     return {"type": "object", "properties": keys, "additionalProperties": False}
 
 
@@ -94,6 +98,10 @@ _SCHEMAS: dict[Callable[..., Any], Callable[[Mapping[str, Any]], Schema]] = {
     checks.pair: lambda given: _several(2),
     checks.wet_angle: lambda given: {"type": "number", "minimum": 0.0, "maximum": 180.0},
     checks.items: _items,
+    table: lambda given: _object(given["fields"]),
+    checks.contact_angle: lambda given: {
+        "type": "number", "minimum": SMALLEST_ANGLE, "maximum": 180.0
+    },
     checks.one_or_more: lambda given: {
         "anyOf": [schema_of(given["each"]), _items({"each": given["each"], "least": 1})]
     },

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.wettability import least_angle, varies
+from .any_solid_foot import through_any
 from .one_asperity import one_asperity
 from .smooth_foot import on_a_line, on_the_plane
 from .spec import Foot, Question
@@ -24,6 +24,9 @@ def foot_of(parts: Question) -> Foot:
         return on_a_line(replace(parts, substrate=one_asperity(solid, parts.scale.length)))
     if isinstance(solid, Sphere) and way == "trimmed":
         return through_one(parts)
+    ends = _is_known(solid) and not varies(solid.contact_angle) and way != "trimmed"
+    if least_angle(solid.contact_angle) < 180.0 and not (ends or _is_rough(solid)):
+        return through_any(parts)
     if isinstance(solid, (Plane, Sphere)) and solid.contact_angle < 180.0:
         return on_a_line(parts)
     exact = parts.law.penalty is None and parts.start is None
@@ -37,20 +40,26 @@ def _check_way(solid: Solid, way: str) -> None:
     ------
     SceneError
     """
-    own = not isinstance(solid, (Plane, Sphere, SphereLattice, Spheres))
-    if own and np.min(solid.contact_angle) < 180.0:
-        raise SceneError(
-            f"substrate.contact_angle = {np.min(solid.contact_angle):g}: contact lines are known "
-            "on planes and spheres only; on a solid of your own the membrane lies, at 180 degrees"
-        )
-    refused: tuple[str, ...] = CONTACT_LINES[1:] if own else ("trimmed", "adhesion")
-    if isinstance(solid, (SphereLattice, Spheres)):
+    refused: tuple[str, ...] = ("adhesion",)
+    if _is_rough(solid):
         refused = ()
-    elif isinstance(solid, Sphere):
-        refused = ("adhesion",)
+    elif not _is_known(solid) or varies(solid.contact_angle):
+        refused = ("conforming", "adhesion")
+    if least_angle(solid.contact_angle) == 180.0 and not isinstance(solid, Sphere):
+        refused = () if _is_rough(solid) else CONTACT_LINES[1 + _is_known(solid) :]
     if way in refused:
         raise SceneError(
-            f'solver.contact_line = "{way}": not available here; on a plane it is "conforming", on '
-            'one sphere also "trimmed", on asperities "trimmed", or "adhesion" near 180 degrees; '
-            '"auto" knows'
+            f'solver.contact_line = "{way}": not available here; on a plane and on one sphere it '
+            'is "conforming" or "trimmed", on asperities "trimmed", or "adhesion" near 180 '
+            'degrees, on other solids and wettabilities "trimmed"; "auto" knows'
         )
+
+
+def _is_known(solid: Solid) -> bool:
+    """Whether the membrane can end on a solid, or lies on its spheres."""
+    return isinstance(solid, (Plane, Sphere, SphereLattice, Spheres))
+
+
+def _is_rough(solid: Solid) -> bool:
+    """Whether it is many asperities."""
+    return isinstance(solid, (SphereLattice, Spheres))

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..initial.liquid import Liquid
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.wettability import varies
 
 
 def described_droplet(
@@ -50,7 +51,7 @@ def described_substrate(substrate: Solid | None) -> dict[str, Any]:
             top = substrate.center == (0.0, 0.0, -substrate.radius)
             return size if top else size | {"center": list(substrate.center)}
         case Plane():
-            plane: dict[str, Any] = {"kind": "plane", "contact_angle": substrate.contact_angle}
+            plane = {"kind": "plane"} | _angle(substrate)
             if substrate == Plane(substrate.contact_angle):
                 return plane
             return plane | {"point": list(substrate.point), "normal": list(substrate.normal)}
@@ -73,8 +74,16 @@ def described_substrate(substrate: Solid | None) -> dict[str, Any]:
             }
             return spheres if substrate.base is None else spheres | {"base": substrate.base}
         case _:
-            angle = np.asarray(substrate.contact_angle).tolist()
-            return {"kind": type(substrate).__name__, "contact_angle": angle}
+            own = getattr(substrate, "described", lambda: {"kind": type(substrate).__name__})
+            return dict(own()) | _angle(substrate)
+
+
+def _angle(substrate: Solid) -> dict[str, Any]:
+    """Contact angle, or the kind of field that stands in its place."""
+    angle = substrate.contact_angle
+    if varies(angle):
+        return {"wettability": angle.described()}
+    return {"contact_angle": np.asarray(angle).tolist()}
 
 
 def described_particle(particle: Sphere) -> dict[str, Any]:

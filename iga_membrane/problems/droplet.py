@@ -18,6 +18,7 @@ from ..initial.particle_placement import check_particles
 from ..own import is_own
 from ..solids import Plane, Solid, Sphere
 from ..solids.own import check_solid
+from ..solids.wettability import varies
 from ..surface.surface import Surface
 from ..terms import (
     Centroid,
@@ -175,7 +176,7 @@ def sessile_droplet(
         scale=scale,
         grading=built.grading,
         directions=built.directions,
-        ramp=ramp_of(parts, place.ends, recipe, pull),
+        ramp=ramp_of(parts, place.ends, built, recipe, pull),
         substrate=place.carrier,
         particles=fixed(grains),
         acceleration=vector("gravity", acceleration),
@@ -253,7 +254,10 @@ def _placed(
 def _check_carrier(place: _Place, scale: Scale, bond: Array, hold: str) -> None:
     """Refuse solids that the scene's frame cannot hold, and gravity across a free droplet."""
     scale.local_solid(place.carrier)  # refuses sizes that it cannot hold
-    if is_own(place.carrier):
+    check = getattr(place.carrier, "check", None)
+    if check is not None:
+        check(place.origin, scale.length)
+    elif is_own(place.carrier):
         check_solid(place.carrier, place.origin, scale.length)
     across = float(np.linalg.norm(bond[:2]))
     hangs = place.free and place.ends is None and hold == "none"
@@ -274,7 +278,8 @@ def _terms(
         gx, gy, gz = (float(g) for g in acceleration)
         terms.append(Gravity(liquid.density, (gx, gy, gz)))
     movable = "".join(axis for axis in "xyz" if axis not in built.sector.mirrored)
-    on_plane = isinstance(parts.substrate, Plane) and not grains
+    even = not varies(parts.substrate.contact_angle)
+    on_plane = isinstance(parts.substrate, Plane) and even and not grains
     pinned = movable.strip("z") if on_plane else ""
     return terms + [Centroid(axis) for axis in movable if axis in pinned or axis in parts.held]
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..initial.liquid import Discretization
-from ..solids import Plane, Sphere
+from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids.wettability import least_angle
 from ..terms import Centroid, SphereContactLine, Term, TrimmedContactLine
 from .bridge import AtGap, Ends, bridge, easy_gap, gap_between
 from .contact_setup import foot_of
@@ -35,21 +36,30 @@ def built_for(parts: Question, ends: Ends | None) -> Foot:
     return with_particles(parts) if parts.particles else foot_of(parts)
 
 
-def ramp_of(parts: Question, ends: Ends | None, recipe: Recipe, pull: float) -> Ramp | None:
+def ramp_of(
+    parts: Question, ends: Ends | None, built: Foot, recipe: Recipe, pull: float
+) -> Ramp | None:
     """The way to a droplet from an easier one: two solids that are near, less gravity, a particle
     that pulls less; None where none is known.
 
     Parameters
     ----------
+    built : the droplet's foot, whose mesh the way keeps.
     recipe : of the droplet; pull : size of gravity.
     """
     if ends is not None and (near := easy_gap(parts, ends)) is not None:
         return Ramp("gap", (near, gap_between(ends)), AtGap(recipe, ends))
     solid = parts.substrate
     # at 180 degrees on a plane there is nothing to start from without gravity
-    falls = isinstance(solid, Plane) and solid.contact_angle < 180.0
-    has_way = isinstance(solid, Sphere) or parts.contact_line == "conforming" or falls
+    falls = isinstance(solid, Plane) and least_angle(solid.contact_angle) < 180.0
+    passes = not isinstance(solid, (Plane, Sphere, SphereLattice, Spheres)) and (
+        least_angle(solid.contact_angle) < 180.0
+    )
+    has_way = falls or passes or isinstance(solid, Sphere) or parts.contact_line == "conforming"
     if parts.bond.any() and has_way:
+        asked = recipe.arguments["discretization"]
+        mesh = replace(asked, degree=built.mesh.degree, elements=built.mesh.elements)
+        recipe = recipe.changed(discretization=mesh)
         return Ramp("gravity.acceleration", (0.0, pull), Along(recipe, "gravity.acceleration"))
     if recipe.arguments["substrate"] is None and parts.held:
         (particle, *_), length = recipe.arguments["particles"], parts.scale.length

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..initial.liquid import Liquid
 from ..solids import Plane, Solid
+from ..solids.wettability import least_angle
 from ..units import implausible, length_as_text, says_si
 
 HEAVY = 1e4
@@ -23,7 +24,7 @@ def hints(
     weight : size of the acceleration.
     bond : Bond numbers along the scene's axes.
     """
-    angle = float(np.min(substrate.contact_angle))
+    angle = least_angle(substrate.contact_angle)
     texts = list(implausible(weight, liquid.surface_tension, liquid.density, volume))
     if 0.0 < angle <= np.pi:
         texts.append(

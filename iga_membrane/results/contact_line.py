@@ -11,8 +11,8 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import integer
 from ..contact.unfitted import Unfitted
+from ..quadrature import gauss
 from ..solids import Sphere
-from ..splines.quadrature import gauss
 from ..splines.space import EDGES, line
 from ..surface.surface import Surface
 from ..terms import BodyDensity
@@ -76,7 +76,7 @@ def contact_line(
 
 
 def trimmed_line(unfitted: Unfitted, surface: Surface, images: list[Array]) -> ContactLine:
-    """Line geometry on a sphere that the membrane passes through, whole and counterclockwise.
+    """Line geometry on solids that the membrane passes through, whole and counterclockwise.
 
     Parameters
     ----------
@@ -89,8 +89,9 @@ def trimmed_line(unfitted: Unfitted, surface: Surface, images: list[Array]) -> C
     speed = np.linalg.norm(tangent, axis=1)
     x = line.x.reshape(-1, 3)
     arc = speed * line.table.weights.ravel()
-    turn = np.cross(x - unfitted.solid.center_of(line.at.which).reshape(-1, 3), tangent)[:, 2]
-    tangent = tangent * (np.sign(turn) / speed)[:, None]
+    # the wetted side lies to the left
+    turn = np.repeat(line.left, line.x.shape[1])
+    tangent = tangent * (turn / speed)[:, None]
     conormal = np.cross(tangent, normal)
     inward = np.einsum("ki,ki->k", conormal, solid)
     conormal = np.where((inward > 0)[:, None], -conormal, conormal)

@@ -158,8 +158,10 @@ def _on_solids(
             ),
         }
     # how far an own pattern of asperities reaches is not known
-    if rough or isinstance(scene.substrate, (Plane, Sphere)):
+    if rough or isinstance(scene.substrate, (Plane, Sphere)) or assembly.contact.passes:
         angles["contact_radius"] = foot * scale.length
+    if assembly.contact.passes and not rough and len(found.which):
+        angles["contact_angle_measured"] = float(found.angles.mean())
     return angles | {
         "A_LG": values["A_LG"] - lying,
         "A_wet": wet + known,

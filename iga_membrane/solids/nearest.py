@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -15,7 +14,11 @@ from ..checks import ndarray
 
 
 @dataclass(frozen=True, eq=False)
-@checked(normal=partial(ndarray, shape=(3,)), ridge=partial(ndarray, shape=(3,)))
+@checked(
+    normal=partial(ndarray, shape=(3,)),
+    ridge=partial(ndarray, shape=(3,)),
+    turn=partial(ndarray, shape=(3, 3)),
+)
 class Nearest:
     """Nearest surface of a solid at points (...).
 
@@ -29,6 +32,9 @@ class Nearest:
     ridge : (..., 3) or None where both curvatures are the same: a vector along the direction of the
         larger one, whose squared length is their difference. The gap's Hessian is
         ``bend (1 - n n) + ridge ridge``.
+    turn : (..., 3, 3) or None: the derivative of the normal by the place (last axis), where the gap
+        is a level that is no distance, 0 on the surface only; it need not be symmetric, and
+        ``bend`` and ``ridge`` do not count then. Contact lines need no more.
     """
 
     gap: Array
@@ -36,25 +42,47 @@ class Nearest:
     bend: Array
     which: Index
     ridge: Array | None = None
+    turn: Array | None = None
 
     @classmethod
     def computed(
-        cls, gap: Array, normal: Array, bend: Array, which: Index, ridge: Array | None = None
+        cls,
+        gap: Array,
+        normal: Array,
+        bend: Array,
+        which: Index,
+        ridge: Array | None = None,
+        turn: Array | None = None,
     ) -> Nearest:
         """What this package has computed itself: made in the innermost loops, it is not checked."""
         found = object.__new__(cls)
-        vars(found).update(gap=gap, normal=normal, bend=bend, which=which, ridge=ridge)
+        vars(found).update(gap=gap, normal=normal, bend=bend, which=which, ridge=ridge, turn=turn)
         return found
 
     def part(self, some: Mask) -> Nearest:
         """At some of the points."""
         ridge = None if self.ridge is None else self.ridge[some]
+        turn = None if self.turn is None else self.turn[some]
         return Nearest.computed(
-            self.gap[some], self.normal[some], self.bend[some], self.which[some], ridge
+            self.gap[some], self.normal[some], self.bend[some], self.which[some], ridge, turn
         )
 
+    def turned(self, ways: Array) -> Array:
+        """(..., k, 3) change of the normal along any number of vectors (..., k, 3) at each
+        point."""
+        if self.turn is not None:
+            return np.asarray(ways @ np.swapaxes(self.turn, -1, -2))
+        n, bend = self.normal[..., None, :], self.bend[..., None, None]
+        found = bend * (ways - n * (ways * n).sum(axis=-1, keepdims=True))
+        if self.ridge is None:
+            return np.asarray(found)
+        v = self.ridge[..., None, :]
+        return np.asarray(found + v * (ways * v).sum(axis=-1, keepdims=True))
+
     def hessian(self) -> Array:
-        """(..., 3, 3) second derivative of the gap."""
+        """(..., 3, 3) derivative of the normal, of a distance the second one of the gap."""
+        if self.turn is not None:
+            return self.turn
         n, v = self.normal, self.ridge
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
         found = self.bend[..., None, None] * across
@@ -69,8 +97,9 @@ class Solid(Protocol):
     """
 
     @property
-    def contact_angle(self) -> float | Sequence[float] | Array:
-        """Young's angle in degrees through the liquid; one, or one for each body."""
+    def contact_angle(self) -> Any:
+        """Young's angle in degrees through the liquid; one, one for each body, or a
+        :class:`.wettability.Wettability`."""
 
     @property
     def scale(self) -> float:

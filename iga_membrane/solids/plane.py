@@ -3,30 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import checked
 from ..arrays import Array, Index
-from ..checks import direction, wet_angle
+from ..checks import direction, either, instance, wet_angle
+from .fan import Fan, chart_fan
 from .nearest import Nearest
+from .wettability import Field, varies
 
 
 @dataclass(frozen=True)
-@checked("substrate", contact_angle=wet_angle, normal=direction)
+@checked("substrate", contact_angle=either(wet_angle, instance(Field)), normal=direction)
 class Plane:
     """Half space below a plane.
 
     Attributes
     ----------
     contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180; 0, perfectly
-        wet, only where a liquid bridges two solids.
+        wet, only where a liquid bridges two solids; or a :class:`.Wettability`, under a droplet.
     point : a point of the plane.
     normal : out of the solid, any length > 0.
     """
 
-    contact_angle: float
+    contact_angle: Any
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     normal: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
@@ -66,6 +69,18 @@ class Plane:
         normal = np.broadcast_to(self.unit_normal(), points.shape)
         shape = points.shape[:-1]
         return Nearest.computed(self.gap(points), normal, np.zeros(shape), np.full(shape, -1))
+
+    def fan(self, points: Array, tangents: Array) -> Fan:
+        """Straight lines from its ``point`` to contact lines on it."""
+        axes = self.axes()
+
+        def place(chart: Array) -> tuple[Array, Array, Array]:
+            x = np.array(self.point) + chart @ axes[:, :2].T
+            return x, np.broadcast_to(axes[:, 2], x.shape), np.ones(x.shape[:-1])
+
+        ends = (points - self.point) @ axes[:, :2]
+        width = self.contact_angle.width if varies(self.contact_angle) else np.inf
+        return chart_fan(place, ends, tangents @ axes[:, :2], width)
 
     @property
     def scale(self) -> float:

@@ -13,6 +13,7 @@ from ..assembly.lagrangian import Assembly
 from ..dofs.spines import Block
 from ..dofs.symmetry import mirrors
 from ..problems.scene import Scene
+from ..solids.wettability import varies
 from ..surface.surface import Surface
 from ..terms import variations as vary
 from .second_variation import SecondVariation, mirrored, normal_motions, rigid_motions
@@ -47,6 +48,8 @@ def neutral_motions(
     solids = [solid for term in scene.local_terms() for solid in term.solids]
     solids += [support.on for support in scene.local_supports().sliding]
     conditions = [normal_motions(places, solid.nearest(places).normal) for solid in solids]
+    fields = [s.contact_angle for s in solids if varies(s.contact_angle)]
+    conditions += [normal_motions(places, field.at(places)[1]) for field in fields]
     conditions += [EXACT / AXIAL * _across(surface, edge) for edge in _rims(scene)]
     pull = np.array(assembly.body.gradient)
     conditions.append(np.concatenate([pull, np.zeros(3)])[None])

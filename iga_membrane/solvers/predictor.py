@@ -138,7 +138,7 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
     touched = np.flatnonzero(on_asperity & lies)
     which, depth = which[touched], -gap[touched]
     centers, radii = solid.center_of(which), solid.radius_of(which)
-    wanted = radii * (1.0 + term.cosine(which))
+    wanted = radii * (1.0 + term.cosine(centers, which)[0])
     press = np.where(depth < SHALLOW * wanted, (wanted - depth) / SHALLOW, 0.0)
     deep = np.maximum(depth, wanted)
     spot = 0.9 * np.sqrt(np.maximum(2.0 * radii * deep - deep**2, 0.0))
@@ -157,7 +157,7 @@ def pressed(scene: Scene, assembly: Assembly, surface: Surface) -> Surface:
         beside = np.linalg.norm(x - center - along[:, None] * toward, axis=1)
         # the drop's other side is crossed by the axis too
         pierced = int(np.where(np.abs(along) < NEARBY, beside, np.inf).argmin())
-        angle = float(np.degrees(np.arccos(term.cosine(each))))
+        angle = float(np.degrees(np.arccos(term.cosine(center, each)[0])))
         particle = Sphere(angle, float(solid.radius_of(each)))
         bent = meniscus(particle, -float(along[pierced]), 1.0)
         distance = np.linalg.norm(surface.points - x[pierced], axis=1) / particle.radius

@@ -13,7 +13,7 @@ from .basis import (
     uniform_basis,
 )
 from .cut import Cut, cut
-from .faces import Faces, faces_between, jumps
+from .faces import Faces, faces_between, folded_pairs, jumps
 from .grading import Grading
 from .knots import (
     DEGREE,
@@ -50,6 +50,7 @@ __all__ = [
     "close_pole",
     "cut",
     "faces_between",
+    "folded_pairs",
     "greville",
     "insertion_matrix",
     "jumps",

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index, Mask
-from .quadrature import gauss
+from ..quadrature import gauss
 
 Level = Callable[[Index, Array], tuple[Array, Array, Index]]
 """Level function: rows (r,) and local points (r, q, 2) in [0, 1]^2 to values (r, q), gradients by

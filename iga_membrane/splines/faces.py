@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Index, Mask
-from .quadrature import gauss
+from ..quadrature import gauss
 from .space import Rows, Space
 
 
@@ -51,6 +51,22 @@ def faces_between(space: Space, elements: Index) -> Faces:
         count = int(inside.sum())
         found.append((np.flatnonzero(inside), other[inside], np.full(count, axis)))
     return Faces(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+
+
+def folded_pairs(space: Space, elements: Index) -> tuple[Index, Index]:
+    """(k,), (k,) places in a list of elements that meet where the sides of a square are folded at
+    their middles; none on other patches."""
+    if space.shared is None:
+        return np.zeros(0, int), np.zeros(0, int)
+    n1, n2 = (basis.elements for basis in space.bases)
+    place = np.full(space.elements, -1)
+    place[elements] = np.arange(len(elements))
+    one, two = np.arange(n1), np.arange(n2)
+    sides = [(one * n2 + j, one[::-1] * n2 + j) for j in (0, n2 - 1)]
+    sides += [(i * n2 + two, i * n2 + two[::-1]) for i in (0, n1 - 1)]
+    first, second = (place[np.concatenate(part)] for part in zip(*sides, strict=True))
+    known = (first >= 0) & (second >= 0)
+    return first[known], second[known]
 
 
 def jumps(space: Space, elements: Index, faces: Faces) -> tuple[Index, Array, Array]:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from ..quadrature import gauss
 from .basis import uniform_basis
-from .quadrature import gauss
 
 ROBIN = 1.3105329259115094
 """``log(2 pi eta(i)^2)`` with Dedekind's eta: a unit force on a unit square that repeats, balanced

@@ -14,8 +14,8 @@ from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import Rule, choice, integer, ndarray, words
 from ..errors import SceneError
+from ..quadrature import gauss
 from .basis import Basis
-from .quadrature import gauss
 from .ruled import Ruled
 from .table import EdgeTable, Table
 

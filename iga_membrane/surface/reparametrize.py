@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from ..quadrature import gauss
 from ..splines import Grading, Space, net_of, points_of
-from ..splines.quadrature import gauss
 from .ring import meridian_interpolation, rational_matrix
 from .surface import Surface
 

@@ -18,6 +18,7 @@ from ..arrays import Array
 from ..checks import either, function, integer, number, words
 from ..errors import SceneError
 from ..own import answer_of, called
+from ..quadrature import gauss
 from ..splines import (
     DEGREE,
     PATCH,
@@ -34,7 +35,6 @@ from ..splines import (
     ring_basis,
     tensor_space,
 )
-from ..splines.quadrature import gauss
 from .surface import Surface
 
 PATCHES: dict[str, Any] = {

@@ -9,7 +9,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -18,11 +17,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arguments import checked
-from ..arrays import Array, Index
+from ..arrays import Array, Index, Mask
 from ..checks import POSITIVE, array, items, real, refusal
 from ..errors import SceneError
 from ..solids import Nearest, Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.fan import Fan, fan_of
 from ..solids.own import nearest_of
+from ..solids.wettability import local_angle
 
 if TYPE_CHECKING:
     from ..splines import EdgeTable
@@ -133,7 +134,7 @@ class Scale:
         unit = self.length
         match solid:
             case Plane():
-                return Plane(solid.contact_angle)
+                return Plane(local_angle(solid.contact_angle, self))
             case Sphere():
                 return self.local_sphere(solid)
             case SphereLattice():
@@ -176,8 +177,8 @@ class LocalSolid:
     view: Scale
 
     @property
-    def contact_angle(self) -> float | Sequence[float] | Array:
-        return self.solid.contact_angle
+    def contact_angle(self) -> Any:
+        return local_angle(self.solid.contact_angle, self.view)
 
     @property
     def scale(self) -> float:
@@ -187,7 +188,21 @@ class LocalSolid:
         at = nearest_of(self.solid, self.view.to_world(points))
         unit, axes = self.view.length, self.view.axes
         ridge = None if at.ridge is None else at.ridge @ axes * np.sqrt(unit)
-        return Nearest.computed(at.gap / unit, at.normal @ axes, at.bend * unit, at.which, ridge)
+        turn = None if at.turn is None else axes.T @ at.turn @ axes * unit
+        return Nearest.computed(
+            at.gap / unit, at.normal @ axes, at.bend * unit, at.which, ridge, turn
+        )
+
+    def knows(self, points: Array) -> Mask:
+        known = getattr(self.solid, "knows", None)
+        found = np.ones(points.shape[:-1], bool)
+        return found if known is None else np.asarray(known(self.view.to_world(points)))
+
+    def fan(self, points: Array, tangents: Array) -> Fan:
+        unit, axes = self.view.length, self.view.axes
+        found = fan_of(self.solid, self.view.to_world(points), tangents @ axes.T * unit)
+        points = self.view.to_local(found.points)
+        return Fan(points, found.normals @ axes, found.weights / unit**2)
 
     def center_of(self, which: Index) -> Array:
         return self.view.to_local(self.solid.center_of(which))

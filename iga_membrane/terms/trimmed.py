@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -27,15 +27,14 @@ from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import array
 from ..solids import Nearest, Solid, SphereLattice, Spheres
+from ..solids.fan import Fan, ball_fan, fan_of
+from ..solids.wettability import cosine_of, least_angle, varies
 from ..splines import LineTable
-from ..splines.quadrature import gauss
 from .term import BodyDensity, Scale, Term
 from .variations import cross, flux, flux_gradient
 
 CapDensity = Callable[[Array, Array, Index], Array]
 """Positions and normals (..., 3) on a wetted surface and its spheres' numbers (...) to values."""
-ARC = 12
-"""Gauss points along an arc of a sphere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,13 +91,24 @@ class TrimmedContactLine(Term):
     @property
     def angles_of_substrate(self) -> Array:
         """Contact angles in degrees, those of particles left out."""
+        least = least_angle(self.solid.contact_angle)
+        if varies(self.solid.contact_angle):
+            return np.array([least])
         angles = np.atleast_1d(np.asarray(self.solid.contact_angle, float))
         return angles if self.toward is None else angles[: len(angles) - len(self.toward)]
 
-    def cosine(self, which: Index) -> Array:
-        """(...) cosine of the contact angle on spheres by their numbers."""
-        angles = np.radians(np.asarray(self.solid.contact_angle))
-        return np.cos(angles[which] if angles.ndim else np.full(np.shape(which), angles))
+    def cosine(self, points: Array, which: Index) -> tuple[Array, Array | None]:
+        """(...) cosine of the contact angle at points (..., 3) of bodies by their numbers, and its
+        gradient (..., 3), None where it is the same all over a body."""
+        return cosine_of(self.solid.contact_angle, points, which)
+
+    def fan(self, which: Index, points: Array, tangents: Array) -> Fan:
+        """The fan at lines on bodies by their numbers: of finite radius they are balls."""
+        radii = self.solid.radius_of(which)
+        if np.isfinite(radii).all():
+            centers = self.solid.center_of(which)
+            return ball_fan(centers, radii, self.axis(which), points, tangents)
+        return fan_of(self.solid, points, tangents)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,14 +117,17 @@ class Line:
 
     Attributes
     ----------
+    term : what they cost.
     table : functions there; ``across`` the coordinate h and ``rising`` the sign of ``g_h``.
     x, a1, a2 : position and tangents.
     m, area : ``a_1 x a_2`` and its length.
     ah, ao, xhh, xho : derivatives along h and o.
-    at : nearest surface of the solid; cosine of its contact angle.
+    at : nearest surface of the solid; cosine of its contact angle, and its gradient, None where it
+        has none.
     gh, go : slopes of the gap.
     """
 
+    term: TrimmedContactLine
     table: LineTable
     x: Array
     a1: Array
@@ -127,6 +140,7 @@ class Line:
     xho: Array
     at: Nearest
     cosine: Array
+    cosine_slope: Array | None
     gh: Array
     go: Array
 
@@ -134,6 +148,17 @@ class Line:
     def tangent(self) -> Array:
         """(pieces, points, 3) derivative of the position along o."""
         return np.asarray(self.ao - (self.go / self.gh)[..., None] * self.ah)
+
+    @property
+    def left(self) -> Index:
+        """(pieces,) 1 where the wetted side lies to the left of the tangent, seen from the liquid,
+        else -1: along h the gap rises."""
+        return np.asarray(np.where(self.table.across == 1, 1, -1) * self.table.rising)
+
+    @cached_property
+    def fan(self) -> Fan:
+        """Lines over the wetted surfaces to them."""
+        return self.term.fan(self.at.which, self.x, self.tangent)
 
 
 def on_line(term: TrimmedContactLine, table: LineTable, points: Array) -> Line:
@@ -145,9 +170,8 @@ def on_line(term: TrimmedContactLine, table: LineTable, points: Array) -> Line:
     at = term.solid.nearest(x)
     gh, go = (np.einsum("kqi,kqi->kq", at.normal, a) for a in (ah, ao))
     area = np.sqrt(np.einsum("kqi,kqi->kq", m, m))
-    return Line(
-        table, x, a1, a2, m, area, ah, ao, xhh, x12, at, term.cosine(at.which), gh, go
-    )  # fmt: skip
+    cosine, slope = term.cosine(x, at.which)
+    return Line(term, table, x, a1, a2, m, area, ah, ao, xhh, x12, at, cosine, slope, gh, go)
 
 
 def line_density(line: Line, tension: float, body: BodyDensity) -> Array:
@@ -180,7 +204,7 @@ def line_hessian(line: Line, tension: float, body: BodyDensity, directions: Arra
     one = (line.table.across == 0)[:, None, None, None]
     nh = np.where(one, n1, n2)
     d = directions[:, None]  # (pieces, 1, local, 3)
-    n, m, bend = (v[:, :, None] for v in (line.at.normal, line.m, line.at.bend[..., None]))
+    n, m = (v[:, :, None] for v in (line.at.normal, line.m))
     a1, a2, ah = (v[:, :, None] for v in (line.a1, line.a2, line.ah))
     area, cosine = line.area[..., None, None], line.cosine[..., None, None]
     gh = line.gh[..., None, None]
@@ -189,31 +213,37 @@ def line_hessian(line: Line, tension: float, body: BodyDensity, directions: Arra
     def dot(u: Array, v: Array) -> Array:
         return np.asarray((u * v).sum(axis=-1, keepdims=True))
 
-    def density(n_: Array, m_: Array, area_: Array, c_: Array) -> Array:
-        """Variation of q by those of n, m, J and c."""
+    def cosine_along(way: Array) -> Array:
+        """Change of the contact angle's cosine along vectors."""
+        slope = line.cosine_slope
+        return np.zeros(1) if slope is None else dot(slope[:, :, None], way)
+
+    def density(n_: Array, m_: Array, area_: Array, c_: Array, cosine_: Array) -> Array:
+        """Variation of q by those of n, m, J, c and cos(theta)."""
         varied = c_ * (m[..., 2:] * n - n[..., 2:] * m)
         varied = varied + c * (
             m_[..., 2:] * n + m[..., 2:] * n_ - n_[..., 2:] * m - n[..., 2:] * m_
         )
-        return np.asarray(varied + tension * (area_ * n + area * n_ - cosine * m_))
+        return np.asarray(varied + tension * (area_ * n + area * n_ - cosine * m_ - cosine_ * m))
 
     # at fixed parameters
     m_j = n1 * cross(*np.broadcast_arrays(d, a2)) + n2 * cross(*np.broadcast_arrays(a1, d))
     area_j = dot(m, m_j) / area
     nd = dot(n, d)
-    n_j = n0 * bend * (d - n * nd)
+    turned = line.at.turned(np.broadcast_to(d, (*line.x.shape[:2], *d.shape[2:])))
+    n_j = n0 * turned
     c_j = n0 * dot(slope, d)
     g_j = n0 * nd
     f_j = tension * area_j + c_j * m[..., 2:] + c * m_j[..., 2:]
-    q_j = density(n_j, m_j, area_j, c_j)
+    q_j = density(n_j, m_j, area_j, c_j, n0 * cosine_along(d))
     # along h
     x1h = np.where(one[..., 0], line.xhh, line.xho)[:, :, None]
     x2h = np.where(one[..., 0], line.xho, line.xhh)[:, :, None]
     m_h = cross(x1h, a2) + cross(a1, x2h)
-    n_h = bend * (ah - n * gh)
-    q_h = density(n_h, m_h, dot(m, m_h) / area, dot(slope, ah))
-    g_hh = dot(n, line.xhh[:, :, None]) + bend * (dot(ah, ah) - gh**2)
-    g_jh = nh * nd + n0 * dot(n_h, d)
+    n_h = line.at.turned(ah)
+    q_h = density(n_h, m_h, dot(m, m_h) / area, dot(slope, ah), cosine_along(ah))
+    g_hh = dot(n, line.xhh[:, :, None]) + dot(n_h, ah)
+    g_jh = nh * nd + n0 * dot(turned, ah)
     h_j = -g_j / gh
     e_j = -(g_jh + h_j * g_hh) / gh
     q = line_density(line, tension, body)[:, :, None]
@@ -240,32 +270,14 @@ def end_hessian(ends: Line, tension: float, body: BodyDensity, directions: Array
     return np.asarray(half + half.transpose(0, 2, 1))
 
 
-def wet_integral(line: Line, term: TrimmedContactLine, density: CapDensity) -> Array:
-    """(pieces,) integrals over the wetted surface, by lines round the axis of each sphere.
-
-    With ``X`` from the centre and ``a`` the axis towards the liquid, an integral over the cap is
-    ``oint G a . (X x X') / |a x X|^2``, ``G`` the integral along the meridian from the axis to the
-    line. It holds wherever the axis lies, as long as its other end is dry.
+def wet_integral(line: Line, density: CapDensity) -> Array:
+    """(pieces,) integrals over the wetted surface, by fans (:mod:`iga_membrane.solids.fan`).
 
     Parameters
     ----------
-    density : position and normal (..., 3), spheres (...) to the integrand (...).
+    density : position and normal (..., 3), numbers of bodies (...) to the integrand (...).
     """
-    which = line.at.which
-    center, r = term.solid.center_of(which), term.solid.radius_of(which)[..., None]
-    away, axis = line.x - center, term.axis(which)
-    along = np.einsum("kqi,kqi->kq", away, axis)
-    across = away - along[..., None] * axis
-    level = np.linalg.norm(across, axis=-1)
-    # the wetted side lies to the left: along h the gap rises
-    left = np.where(line.table.across == 1, 1, -1) * line.table.rising
-    turn = np.einsum("kqi,kqi->kq", axis, cross(away, line.tangent)) / level**2
-    polar = np.arctan2(level, along)[..., None]
-    u, w = gauss(ARC)
-    angle = polar * u
-    out = (across / level[..., None])[..., None, :]
-    normal = np.sin(angle)[..., None] * out + np.cos(angle)[..., None] * axis[..., None, :]
-    x = center[..., None, :] + r[..., None] * normal
-    value = density(x, normal, np.broadcast_to(which[..., None], angle.shape))
-    whole = (value * np.sin(angle) * polar * r**2) @ w
-    return np.asarray((whole * turn * line.table.weights).sum(axis=1) * left)
+    fan = line.fan
+    owner = np.broadcast_to(line.at.which[..., None], fan.weights.shape)
+    whole = (density(fan.points, fan.normals, owner) * fan.weights).sum(axis=-1)
+    return np.asarray((whole * line.table.weights).sum(axis=1) * line.left)

@@ -24,6 +24,7 @@ from ..terms import BodyDensity, WettingLine
 from ..terms.trimmed import Line
 from .audit import (
     AT_A_TIME,
+    NOTHING,
     cosine_error,
     density_at,
     edge_forces,
@@ -98,14 +99,18 @@ def trimmed_audit(
         size = max(abs(loads.push), abs(pulls[1]), TINY)
         return replace(found, force=abs(loads.push + pulls[1]) / size)
     gradient = np.array(body.gradient)
-    push = sector.copies * (density.sum(axis=(0, 1)) + _pressed(unfitted, surface, body, outside))
+    drawn = sector.copies * density.sum(axis=(0, 1))
+    pressed = sector.copies * _pressed(unfitted, surface, body, outside)
+    push = drawn + pressed
     below = 0.0
     if foot is not None and rim is not None:
         on_plane = vertical_forces(rim, body, tension, _young(foot))
         push[2] -= on_plane.push - on_plane.line
         below = abs(on_plane.push)
     weight = float(np.linalg.norm(gradient)) * inside
-    size = max(weight, below, abs(float(push[2])), TINY)
+    carried = float(abs(drawn[2]) + abs(pressed[2]))
+    least = NOTHING * carried if weight else carried  # without weight lines and pressure balance
+    size = max(weight, below, abs(float(push[2])), least, TINY)
     missing = push + gradient * inside
     loose = [axis not in sector.mirrored for axis in "xy"]
     sideways = float(np.hypot(*(missing[:2] * loose))) / size if any(loose) else None

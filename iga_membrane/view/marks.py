@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..driver.lines import LineOnSolid, contact_lines
 from ..solids import Sphere
+from ..solids.fan import on_surface
 from .fields import solids
 from .mesh import trimming_solid
 
@@ -88,7 +89,14 @@ def _spot(pv: Any, solution: Solution, each: LineOnSolid) -> Any:
     wet = solution.scene.units.axes[:, 2]
     if through is not None and each.solid >= 0:
         wet = through.axis(np.array(each.solid))
-    return _fan(pv, each.line.position, center, radius, wet)
+    grid = _fan(pv, each.line.position, center, radius, wet)
+    if through is not None and each.solid < 0:
+        scale = solution.scene.units
+        local = scale.to_local(np.asarray(grid.points, float))
+        on, _, found = on_surface(scale.local_solid(through.solid), local)
+        local[found] = on[found] + [0.0, 0.0, LIFT]
+        grid.points = scale.to_world(local)
+    return grid
 
 
 def _lain_on(pv: Any, solution: Solution, asperity: Any) -> Any:

@@ -74,4 +74,10 @@ def outside(solid: Solid, mesh: Any) -> Any:
     """The part of the membrane's mesh that bounds the liquid."""
     mesh["gap"] = solid.nearest(np.asarray(mesh.points, float)).gap
     # inside its solid the membrane may rise above it: such parts hang on nothing
-    return mesh.clip_scalar(scalars="gap", value=0.0, invert=False).connectivity("largest")
+    outer = mesh.clip_scalar(scalars="gap", value=0.0, invert=False)
+    # the edges of a folded patch are open by rounding
+    return outer.extract_surface(algorithm=None).clean(tolerance=JOINED).connectivity("largest")
+
+
+JOINED = 1e-5
+"""Distance of points of a mesh that are joined, over its size: seams are open by 3e-6."""

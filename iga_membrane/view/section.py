@@ -12,6 +12,7 @@ from ..arrays import Array
 from ..driver.solution import Solution
 from ..reference import profile_on_plane
 from ..solids import Plane, Sphere, SphereLattice, Spheres
+from ..solids.wettability import varies
 from .fields import solids
 from .figure import figure, write_figure
 from .mesh import RESOLUTION, membrane, outside, trimming_solid
@@ -86,7 +87,8 @@ def plot_section(
 def _axisymmetric(solution: Solution) -> tuple[Array, Array] | None:
     """Reference profile of an upright droplet on a plane, in the scene's scale."""
     scene = solution.scene
-    upright = isinstance(scene.substrate, Plane) and not scene.lateral_load and not scene.particles
+    even = isinstance(scene.substrate, Plane) and not varies(scene.substrate.contact_angle)
+    upright = even and not scene.lateral_load and not scene.particles
     if scene.kind != "sessile_droplet" or not upright or scene.line_inside:
         return None
     bond = solution.body.gradient[2]

@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.fan import on_surface
+from ..solids.wettability import varies
 
 if TYPE_CHECKING:
     from ..driver.solution import Solution
 
 DRY, WET = "#d9d2c5", "#cc4125"
 """Colours of solids, and of asperities that carry a part of the droplet."""
+PATTERN = ["#f3ead8", "#8c9bab"]
+"""Colours of a pattern of contact angles, from the largest to the smallest."""
 
 
 def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> None:
@@ -42,12 +46,19 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
         solid = pv.Cylinder(
             center=center, direction=(0, 0, 1), radius=reach, height=thick, resolution=180
         )
+        if varies(substrate.contact_angle):
+            solid = pv.Disc(inner=0.0, outer=reach, r_res=ACROSS, c_res=2 * ACROSS)
         solid.points = scale.to_world(np.asarray(solid.points, float))
         look["smooth_shading"] = False
     elif substrate is not None:
         solid = _by_gap(pv, substrate, solution)
     else:
         return
+    angle: Any = substrate.contact_angle
+    if varies(angle):
+        solid["cosine"], _ = angle.at(np.asarray(solid.points, float))
+        del look["color"]
+        look |= {"scalars": "cosine", "cmap": PATTERN, "show_scalar_bar": False}
     opacity = opacity if solution.scene.kind == "liquid_sheet" else 1.0
     plotter.add_mesh(solid, opacity=opacity, **look)
 
@@ -61,9 +72,15 @@ ACROSS = 240
 
 
 def _by_gap(pv: Any, solid: Solid, solution: Solution) -> Any:
-    """Where the gap vanishes, under the droplet and a little beside it."""
+    """Where the gap vanishes, under the droplet and a little beside it: the graph that it is over
+    the plane z = 0, if it is one."""
     points = solution.surface.points
     reach = 1.3 * float(np.abs(points[:, :2]).max())
+    axis = np.linspace(-reach, reach, 2 * ACROSS + 1)
+    plane = np.stack([*np.meshgrid(axis, axis, indexing="ij"), np.zeros(2 * [len(axis)])], axis=-1)
+    x, _, found = on_surface(solid, plane)
+    if found.all():
+        return pv.StructuredGrid(*(np.ascontiguousarray(x[..., i])[..., None] for i in range(3)))
     cell, top = 2.0 * reach / ACROSS, float(points[:, 2].min())
     deep = min(2.0 * solid.scale, 0.5 * reach) + 4.0 * cell
     grid = pv.ImageData(

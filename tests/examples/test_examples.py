@@ -146,6 +146,17 @@ def test_scripts_have_at_most_twenty_lines(name):
 
 
 @pytest.mark.slow
+def test_textures(tmp_path):
+    example = load("textures")
+    drops = example.main(tmp_path)
+    assert all(drop.success for drop in drops.values())
+    carton = drops["egg carton"]
+    foot = carton.measures["contact_radius"]
+    wenzel = carton.measures["A_wet"] / (np.pi * foot**2) * np.cos(np.radians(105.0))
+    angle = example.cap_angle(foot, carton.measures["volume"])
+    assert np.cos(np.radians(angle)) == pytest.approx(wenzel, abs=0.05)
+
+
 def test_pillars():
     example = load("pillars")
     round_, flat = example.main(rims=(0.15, 0.1), radius=0.15, elements=48)

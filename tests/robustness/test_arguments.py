@@ -106,6 +106,12 @@ GIVEN = {
     "axisymmetric": lambda: {"space": ring(), "profile": meridian},
     "bspline_basis": lambda: {"knots": [0, 0, 0, 0.5, 1, 1, 1], "degree": 2},
     "cap": lambda: {"radius": 1.0, "contact_angle": 60.0},
+    "Cylinder": lambda: {"contact_angle": 90.0, "radius": 1.0},
+    "HeightMap": lambda: {"height": lambda x, y: 6 * (0.0 * x,), "contact_angle": 90.0,
+                          "scale": 1.0},
+    "Wettability": lambda: {"cosine": lambda x: (0.0 * x[..., 0], 0.0 * x)},
+    "patch": lambda: {"inside": 60.0, "outside": 120.0, "radius": 1.0, "border": 0.1},
+    "stripes": lambda: {"first": 60.0, "second": 120.0, "period": 1.0, "border": 0.1},
     "check_derivatives": lambda: {"scene": drop().scene},
     "close_pole": lambda: {"space": ring()},
     "contact_line": lambda: {"surface": drop().surface},
@@ -264,7 +270,10 @@ WRONG = {
 }
 TAKES = {
     "five, half": """
-        Contact.depth Contact.adhesion Contact.compliance Contact.traction Grading.first
+        Contact.depth Contact.adhesion Contact.compliance Contact.traction Cylinder.contact_angle
+        Cylinder.radius Grading.first HeightMap.contact_angle HeightMap.scale patch.inside
+        patch.outside patch.radius patch.border stripes.first stripes.second stripes.period
+        stripes.border
         Gravity.density_of_liquid Liquid.surface_tension Liquid.density NormalLineLoad.gamma
         Plane.contact_angle PlaneContactLine.gamma PlaneContactLine.contact_angle Ring.radius
         Scale.length Scale.tension Scene.liquid_density SolverOptions.max_cpu_s
@@ -281,7 +290,8 @@ TAKES = {
         sessile_droplet.penetration_tolerance sheet.size sphere.radius
     """,
     "None": """
-        Contact.ring Discretization.degree Discretization.model Kinematics.second Scene.scale
+        Contact.ring Cylinder.point Discretization.degree Discretization.model Kinematics.second
+        Nearest.turn Scene.scale
         Scene.origin
         Scene.grading Scene.directions Scene.ramp Scene.predictor Scene.free_edge Scene.otherwise
         Scene.finer Scene.recipe
@@ -331,9 +341,10 @@ TAKES = {
         Verdict.normal Verdict.tangential Verdict.weight Verdict.slide
     """,
     "class": """
-        Discretization.space critical_value.measure pull_off.report solve.report sweep.scene_of
-        trace.report
+        Discretization.space HeightMap.height critical_value.measure pull_off.report solve.report
+        sweep.scene_of trace.report
     """,
+    "class, function": "Wettability.cosine",
     "None, five": """
         Discretization.elements SolverOptions.quadrature contact_line.points drop_space.around
         ring_space.around sweep.workers
