@@ -24,6 +24,7 @@ from .checks import (
     number,
     one_or_more,
     pair,
+    path,
     refusal,
     state_file,
     suggestion,
@@ -62,7 +63,8 @@ def table(field: str, value: Any, *, fields: Mapping[str, Rule]) -> Any:
     for key in value:
         if key not in fields:
             raise SceneError(
-                f"{field}.{key}: unknown key{suggestion(key, fields)} (known: {', '.join(fields)})"
+                f"{field}.{key}: unknown key, must be one of {', '.join(fields)}"
+                f"{suggestion(key, fields)}"
             )
     return {key: fields[key](f"{field}.{key}", item) for key, item in value.items()}
 
@@ -100,7 +102,7 @@ FIELDS: dict[str, Rule] = {
     "substrate.edge": POSITIVE,
     "substrate.amplitudes": partial(items, each=number, least=1),
     "substrate.periods": partial(items, each=POSITIVE, least=1),
-    "substrate.file": text,
+    "substrate.file": path,
     "substrate.scale": POSITIVE,
     "substrate.axis": direction,
     "substrate.wettability": partial(table, fields=WETTABILITY),

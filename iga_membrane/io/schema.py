@@ -91,6 +91,7 @@ _SCHEMAS: dict[Callable[..., Any], Callable[[Mapping[str, Any]], Schema]] = {
     checks.integer: partial(_number, kind="integer"),
     checks.flag: lambda given: {"type": "boolean"},
     checks.text: lambda given: {"type": "string"},
+    checks.path: lambda given: {"type": "string", "minLength": 1},
     checks.choice: lambda given: {"enum": list(given["allowed"])},
     checks.state_file: lambda given: {"type": "string", "pattern": r"\.npz$"},
     checks.direction: lambda given: _several(3),

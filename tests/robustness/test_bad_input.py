@@ -129,13 +129,15 @@ def refused(read, table, key, value):
     said = str(caught.value)
     assert label(table, key) in said
     assert any(word in said for word in ("must ", "needed", "needs", "not available", "the same"))
-    if not isinstance(value, list):  # of a list the bad item is named
+    if not (isinstance(value, list) or (key in TABLES and isinstance(value, dict))):
+        # of a list the bad item is named, of a table the bad key
         assert repr(value) in said or repr(float(value)) in said
 
 
 FIELDS = [(table, key) for table in KEYS if table for key in KEYS[table]]
 TEXTS = ("kind", "arrangement", "motion", "hold", "boundary", "shape", "space", "model",
          "contact", "contact_line", "start", "parameter")  # fmt: skip
+TABLES = ("wettability",)
 EXPRESSION = "__import__('os').system('touch evaluated')"
 
 
@@ -143,7 +145,7 @@ EXPRESSION = "__import__('os').system('touch evaluated')"
 def test_every_field_refuses_a_wrong_type(table, key, tmp_path, monkeypatch):
     """Text, with a unit or to be evaluated (X5), is no number; a number is no text."""
     monkeypatch.chdir(tmp_path)
-    if key in TEXTS:
+    if key in (*TEXTS, "file"):
         wrong = [5, True]
     elif key in ("liquid_weight", "follow_instability"):
         wrong = [1, "true"]
@@ -187,9 +189,15 @@ OUT = {
     "liquid_weight": ("yes",),
     "follow_instability": ("yes",),
     "parameter": ("sheet", "sheet.pressur"),
+    "axis": ([0, 0, 0], [1, 2], []),
+    "amplitudes": ([], [1.0, "1"]),
+    "wettability": ({"kind": "dots"}, {"border": 0.0}, {"angles": [90.0, 181.0]}),
+    "file": ("", "\0"),
 } | {key: ("no such word",) for key in TEXTS if key != "parameter"}
-FREE = {("sheet", "pressure"), ("sheet", "volume"), ("cell", "pressure"), ("rings", "pressure")}
-"""Fields of which any finite number is right: the volume of a sheet has a sign."""
+FREE = {("sheet", "pressure"), ("sheet", "volume"), ("cell", "pressure"), ("rings", "pressure"),
+        ("substrate", "amplitude"), ("substrate", "height")}  # fmt: skip
+"""Fields of which any finite number is right: the volume of a sheet has a sign, a dimple's height
+too."""
 
 
 def below(rule):

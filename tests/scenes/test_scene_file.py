@@ -116,7 +116,7 @@ def test_misspelt_keys_are_refused(path, said):
         (
             "substrate.kind",
             "none",
-            'substrate.contact_angle: substrate.kind = "none" has no fields',
+            'substrate.contact_angle: substrate.kind = "none" has no such field',
         ),
         ("substrate.kind", "sphere", "substrate.radius: missing"),
         ("scene", "asperity_cell", "gravity: does not belong"),
@@ -135,7 +135,7 @@ def test_misspelt_keys_are_refused(path, said):
         ("solver.contact", "penalty", "not available yet"),
         ("solver.contact_line", "adhesion", "not available here"),
         ("solver.start", "flat", "only at 180 degrees"),
-        ("substrate.base", -0.1, "a plane has no such field"),
+        ("substrate.base", -0.1, 'substrate.kind = "plane" has no such field'),
         ("sheet", {"size": 5.0}, "does not belong"),
     ],
 )

@@ -16,7 +16,7 @@ from iga_membrane.io.schema import SEVERAL, schema_of
 VALUES = [
     0, 1, 3, 5, -1, 4096, 5000, 0.5, -0.5, 90.0, 180.0, 181.0, 1e-3, "full", "plane", "none", "xy",
     "auto", "square", "fixed", "bspline", "spines", "exact", "state.npz",
-    "state.txt", "", True, False, None, [], [1.0], [1.0, 2.0],
+    "state.txt", "bump", "", True, False, None, [], [1.0], [1.0, 2.0],
     [1.0, 2.0, 3.0], [[1.0, 2.0, 3.0]], [1.0, "x", 2.0], [[1.0, 2.0]], {}, {"a": 1.0}, [90.0, 0.0],
     [90.0, 200.0],
 ]  # fmt: skip
