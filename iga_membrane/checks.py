@@ -21,6 +21,7 @@ import numpy as np
 
 from .arrays import Array
 from .errors import SceneError
+from .quantities import Quantity, in_si, parsed
 
 Rule = Callable[[str, Any], Any]
 """Field and value to the value, checked."""
@@ -83,7 +84,11 @@ def number(
     rule = f"{name} must be {' and '.join(rules) or 'a number'}, finite" + (
         f" ({unit})" * bool(unit)
     )
-    result = _float(field, value, rule)
+    try:
+        value = in_si(field, value)
+    except ValueError as error:
+        raise refusal(field, value, rule, str(error)) from None
+    result = value if isinstance(value, Quantity) else _float(field, value, rule)
     told = value if math.isinf(result) else result
     if not (math.isfinite(result) and result > above and least <= result <= most):
         raise refusal(field, told, rule, "choose a value within")
@@ -97,11 +102,6 @@ def number(
 
 def _float(field: str, value: Any, rule: str) -> float:
     """A real number as a double, infinite where it is too large for one."""
-    if isinstance(value, str):
-        raise refusal(
-            field, value, rule, "text is not read as a number: give it without quotes "
-            "and unit, all fields in one consistent set of units"
-        )  # fmt: skip
     if isinstance(value, bool) or not isinstance(value, Real):
         raise refusal(field, value, rule, f"got {type(value).__name__}, give a number")
     try:
@@ -117,9 +117,7 @@ def anything(field: str, value: Any) -> Any:
 
 def listed(value: Any) -> bool:
     """Whether a value is a list of some kind."""
-    single = isinstance(value, (str, bytes, Mapping)) or (
-        isinstance(value, np.ndarray) and not value.ndim
-    )
+    single = isinstance(value, (str, bytes, Mapping)) or not getattr(value, "ndim", 1)
     return isinstance(value, Iterable) and not single
 
 
@@ -253,6 +251,14 @@ def flag(field: str, value: Any) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise refusal(field, value, "must be true or false", f"got {type(value).__name__}")
     return bool(value)
+
+
+def quantity(field: str, value: Any) -> Quantity:
+    """Text of a number with its unit."""
+    try:
+        return parsed(text(field, value))
+    except ValueError as error:
+        raise refusal(field, value, *str(error).split("; ", 1)) from None
 
 
 def text(field: str, value: Any) -> str:

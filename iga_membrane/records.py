@@ -19,6 +19,7 @@ import numpy as np
 
 from .arrays import Array
 from .errors import SceneError
+from .quantities import Quantity
 
 _PACKAGE = __name__.rpartition(".")[0]
 
@@ -32,6 +33,8 @@ def encode(value: Any, arrays: dict[str, Array]) -> Any:
     """
     if isinstance(value, Enum):
         return {"enum": _name(type(value)), "value": value.name}
+    if isinstance(value, Quantity):
+        return {"quantity": [float(value), value.dimension]}
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, np.generic):
@@ -99,6 +102,8 @@ def decode(tree: Any, arrays: Mapping[str, Array], also: Sequence[type] = ()) ->
             return arrays[name]
         case {"complex": [float(real), float(imaginary)]}:
             return complex(real, imaginary)
+        case {"quantity": [float(size), str(dimension)]}:
+            return Quantity(size, dimension)
         case {"map": list(items)}:
             return table_of(items)
         case {"tuple": list(items)}:

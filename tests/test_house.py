@@ -14,7 +14,7 @@ FLOORS = {
     "arrays": 0, "errors": 0, "checks": 0, "deadline": 0, "_kernels": 0,
     "arguments": 0, "fields": 0, "files": 0, "records": 0, "progress": 0, "tables": 0, "units": 0,
     "threads": 0, "own": 0, "optional": 0, "output_folder": 0,
-    "status": 0, "lazy": 0, "quadrature": 0,
+    "status": 0, "lazy": 0, "overview": 0, "quantities": 0, "quadrature": 0,
     "splines": 1, "solids": 1, "linalg": 1,
     "surface": 2,
     "dofs": 3,

@@ -1,11 +1,14 @@
-"""Quantities as text, and the same droplet in SI and without dimensions (I12)."""
+"""Quantities as text and of pint, units through to the results, and the same droplet in SI and
+without dimensions (I12)."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
 
 import iga_membrane as iga
+from iga_membrane.quantities import SIZES, UNITS, Quantity, dimension_of, unit_of
 
 
 @pytest.mark.parametrize(
@@ -95,3 +98,176 @@ def test_numbers_without_units_stand_beside_the_results(tmp_path):
     assert f"bond number {numbers['bond_number']:.6g}" in drop.summary()
     drop.save(tmp_path / "result.json")
     assert json.loads((tmp_path / "result.json").read_text())["dimensionless"] == numbers
+
+
+WATER = {"surface_tension": 0.0728, "density": 998.0}
+FILES = [
+    {
+        "scene": "sessile_droplet",
+        "liquid": WATER | {"volume": 3e-9},
+        "gravity": {"acceleration": 9.81},
+        "substrate": {"kind": "plane", "contact_angle": 90.0},
+        "particle": [
+            {"radius": 3e-4, "center": [0.0, 0.0, 1.1e-3], "density": 1500.0, "contact_angle": 90.0}
+        ],
+        "discretization": {"elements": 6},
+    },
+    {
+        "scene": "sessile_droplet",
+        "liquid": WATER | {"volume": 3e-9},
+        "substrate": {
+            "kind": "height_map", "contact_angle": 115.0, "shape": "two_level",
+            "amplitudes": [1e-5, 5e-6], "periods": [1e-3, 4e-4],
+        },
+        "discretization": {"elements": 6},
+    },
+    {
+        "scene": "sessile_droplet",
+        "liquid": WATER | {"volume": 3e-9},
+        "substrate": {
+            "kind": "sphere_lattice", "contact_angle": 120.0, "radius": 1e-5, "spacing": 3e-4,
+            "offset": [1e-5, 0.0], "base": -1e-4,
+        },
+        "discretization": {"elements": 6},
+    },
+    {
+        "scene": "film_between_rings",
+        "liquid": WATER,
+        "rings": {"radius": 1e-3, "half_height": 4e-4, "volume": 2e-9},
+        "discretization": {"elements": 6},
+    },
+    {
+        "scene": "asperity_cell",
+        "liquid": WATER,
+        "substrate": {"kind": "sphere", "contact_angle": 110.0, "radius": 1e-5},
+        "cell": {"size": 4e-5, "pressure": 100.0},
+        "discretization": {"elements": 6},
+    },
+    {
+        "scene": "liquid_sheet",
+        "liquid": WATER,
+        "sheet": {"size": 5e-3, "pressure": 3.0},
+        "discretization": {"elements": 6},
+    },
+]  # fmt: skip
+
+
+def in_unit(field, value, unit):
+    """A file's value with the numbers of a dimension as text in one of its units."""
+    if isinstance(value, dict):
+        return {key: in_unit(f"{field}.{key}", item, unit) for key, item in value.items()}
+    if isinstance(value, list):
+        return [in_unit(field, item, unit) for item in value]
+    size, dimension = UNITS[unit]
+    if isinstance(value, float) and dimension_of(field) == dimension:
+        return f"{value / size!r} {unit}"
+    return value
+
+
+def leaves(value):
+    """The numbers and words of nested tables in order."""
+    if isinstance(value, dict):
+        return [leaf for item in value.values() for leaf in leaves(item)]
+    if isinstance(value, (list, tuple)):
+        return [leaf for item in value for leaf in leaves(item)]
+    return [value]
+
+
+@cache
+def plain(number):
+    return iga.read_scene(FILES[number] | {"units": "SI"}).scene
+
+
+@pytest.mark.parametrize("unit", ["um", "ul", "mN/m", "g/cm^3", "cm/s^2", "kPa", "deg"])
+def test_a_field_in_any_of_its_units_is_the_field_in_si(unit):
+    """The same scene to rounding, whichever table the number stands in."""
+    met = 0
+    for number, file in enumerate(FILES):
+        asked = in_unit("", file, unit)
+        if asked == file:
+            continue
+        met += 1
+        scene = iga.read_scene(asked | {"units": "SI"}).scene
+        assert scene.unit_system == plain(number).unit_system == "SI"
+        both = leaves(scene.description), leaves(plain(number).description)
+        for one, two in zip(*both, strict=True):
+            assert one == (pytest.approx(two, rel=1e-12) if isinstance(two, float) else two)
+    assert met
+
+
+def test_degrees_alone_do_not_make_a_scene_si():
+    scene = iga.sessile_droplet(
+        iga.Plane(contact_angle="115 deg"),
+        volume=1.0,
+        discretization=iga.Discretization(elements=6),
+    )
+    assert scene.unit_system == "dimensionless"
+
+
+@pytest.mark.parametrize("given", [{}, {"liquid": iga.Liquid(1.0, 998.0)}])
+def test_a_tension_left_out_beside_units_is_refused(given):
+    """It would be one newton per metre."""
+    with pytest.raises(
+        iga.SceneError, match=r"surface_tension = 1\.0: was left out or has no unit"
+    ):
+        iga.sessile_droplet(iga.Plane(contact_angle=90), volume="1 uL", **given)
+
+
+def test_pint_speaks_for_itself():
+    unit = pytest.importorskip("pint").UnitRegistry()
+    gravity = np.array([0.0, 0.0, -981.0]) * unit.cm / unit.s**2
+    scene = iga.sessile_droplet(
+        iga.Plane(contact_angle=(np.pi / 2) * unit.rad),
+        volume=2 * unit.microliter,
+        liquid=iga.Liquid(72.8 * unit.dyne / unit.cm, 0.998 * unit.g / unit.mL),
+        gravity=gravity,
+        discretization=iga.Discretization(elements=6),
+    )
+    assert scene.unit_system == "SI"
+    liquid = scene.description["liquid"]
+    wanted = {"surface_tension": 0.0728, "density": 998.0, "volume": 2e-9}
+    assert liquid == pytest.approx(wanted, rel=1e-12)
+    assert scene.acceleration == pytest.approx((0.0, 0.0, -9.81), rel=1e-12)
+    assert scene.description["substrate"]["contact_angle"] == pytest.approx(90.0, rel=1e-12)
+    with pytest.raises(iga.SceneError, match="Cannot convert"):
+        iga.Liquid(surface_tension=3 * unit.microliter)
+    with pytest.raises(iga.SceneError, match="without a unit"):
+        iga.SolverOptions(max_cpu_s=3 * unit.minute)
+
+
+@pytest.fixture(scope="module")
+def in_si():
+    return iga.solve(iga.read_scene(in_unit("", FILES[3], "mm")).scene)
+
+
+def test_units_outlive_a_state_file_and_a_change(in_si, tmp_path):
+    in_si.save(tmp_path / "state.npz")
+    again = iga.load(tmp_path / "state.npz").scene
+    assert again.unit_system == again.at("rings.radius", 1.1e-3).unit_system == "SI"
+    assert type(again.recipe.arguments["radius"]) is Quantity
+
+
+def test_results_tables_and_texts_say_their_units(in_si, tmp_path):
+    in_si.save(tmp_path / "result.json")
+    in_si.save(tmp_path / "shape.vtu")
+    record = json.loads((tmp_path / "result.json").read_text())
+    assert record["units"] == record["scene"]["units"] == in_si.row()["units"] == "SI"
+    assert record["unit_of"] == {name: unit_of(name, "SI") for name in in_si.measures}
+    for name, unit in (("E_surf", "J"), ("A_LG", "m^2"), ("pressure", "Pa"), ("volume", "m^3"),
+                       ("neck_radius", "m"), ("force", "N"), ("end_slope_deg", "deg")):  # fmt: skip
+        assert record["unit_of"][name] == unit
+        assert f"{in_si.measures[name]:.10g} {unit}\n" in in_si.summary()
+        assert f"{in_si.measures[name]:.6g} {unit}" in repr(in_si).replace("\n  ", " ")
+    assert '"units"' in (tmp_path / "shape.vtu").read_text()
+    # what the numbers without dimensions are told by their names says all that SI calls by units
+    assert {of for _, of in UNITS.values()} == set(SIZES)
+
+
+def test_numbers_without_units_say_so():
+    film = iga.solve(
+        iga.film_between_rings(half_height=0.4, discretization=iga.Discretization(elements=6))
+    )
+    assert film.row()["units"] == "dimensionless"
+    assert "dimensionless" in film.summary()
+    assert "dimensionless" in repr(film)
+    assert " m" not in repr(film).splitlines()[1]

@@ -24,8 +24,10 @@ from ..driver.result_file import flat
 from ..errors import OutputError, SceneError
 from ..files import write_whole
 from ..output_folder import output_folder
+from ..overview import Overview, Told
 from ..problems.scene import Scene
 from ..progress import bar
+from ..quantities import DIMENSIONLESS, told_value
 from ..solvers.options import SolverOptions
 from ..tables import column, csv_text, dataframe, dataset, names_of
 from .job import Job, fingerprint, question_of
@@ -40,11 +42,13 @@ IN_FLIGHT = 64
 MOST = 1_000_000
 """Points of a sweep at most."""
 SUCCESS = "CONVERGED_STABLE"
+TEXTS = ("status", "units", "error")
+"""Columns that are no numbers."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 @checked(computed=partial(integer, least=0))
-class Sweep:
+class Sweep(Told):
     """What a sweep found.
 
     Attributes
@@ -60,6 +64,25 @@ class Sweep:
     records: Sequence[Record] = field(repr=False)
     computed: int = 0
     mixed: bool = False
+
+    def overview(self) -> Overview:
+        """How its points ended, what was varied, and the measures from least to greatest."""
+        counts = ", ".join(f"{count} {name}" for name, count in self.statuses.items())
+        rows = [("status", counts)]
+        names = [name for name in names_of(self._rows()) if name not in TEXTS]
+        for name in names:
+            found = self.column(name)
+            found = found[np.isfinite(found)]
+            if len(found):
+                most = told_value(name, found.max(), self.units)
+                rows.append((name, f"{found.min():.6g} to {most}"))
+        return Overview(f"sweep, {self.units}: {len(self.records)} points", rows)
+
+    @property
+    def units(self) -> str:
+        """Of its numbers: "SI" or "dimensionless"; of points in both, both."""
+        found = {row["units"] for row in self._rows() if "units" in row}
+        return " and ".join(sorted(found)) or DIMENSIONLESS
 
     @property
     def success(self) -> bool:
@@ -88,10 +111,9 @@ class Sweep:
         if path.suffix == ".csv":
             write_whole(path, lambda name: Path(name).write_text(csv_text(rows), "utf-8"))
         elif path.suffix == ".npz":
-            texts = ("status", "error")
             columns: dict[str, Any] = {
                 name: np.array([str(row.get(name, "")) for row in rows])
-                if name in texts
+                if name in TEXTS
                 else column(rows, name)
                 for name in names_of(rows)
             }

@@ -19,6 +19,7 @@ from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import array, integer, ndarray
 from ..errors import GeometryError
+from ..overview import brief_repr
 from ..splines import Space, net_of
 from ..splines.space import EDGES
 from ..surface.surface import Surface
@@ -57,6 +58,8 @@ class Motion:
     size: int
     shifts: Array
     share: Array
+
+    __repr__ = brief_repr
 
     def displacement(self, step: Array) -> Array:
         """(count, 3) displacements for unknowns (size,)."""

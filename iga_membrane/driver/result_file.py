@@ -13,6 +13,7 @@ import numpy as np
 from .. import __version__
 from ..errors import SceneError, StateError
 from ..io.scene_file import SCHEMA, read_tables
+from ..quantities import DIMENSIONLESS, unit_of
 from ..results.forces import ParticleForces
 from ..solvers.load_path import LoadStep
 from .solution import Solution
@@ -20,7 +21,7 @@ from .solution import Solution
 
 def result(solution: Solution) -> dict[str, Any]:
     """The record of a solve by the names of the contract; None where a value is not finite."""
-    verdict = solution.audit
+    verdict, system = solution.audit, solution.scene.unit_system
     record = {
         "schema": SCHEMA,
         "version": __version__,
@@ -38,7 +39,11 @@ def result(solution: Solution) -> dict[str, Any]:
         "load_steps": len(solution.load_steps),
         "newton_iterations": solution.newton_iterations,
         "cpu_seconds": dict(solution.cpu_seconds),
+        "units": system,
         "measures": dict(solution.measures),
+        "unit_of": {
+            name: unit_of(name, system) or DIMENSIONLESS for name in solution.measures
+        },
         "dimensionless": dict(solution.dimensionless),
         "multipliers": dict(solution.multipliers),
         "contact": {
@@ -67,7 +72,8 @@ def flat(found: Mapping[str, Any]) -> dict[str, Any]:
     """A result as one row of a table: status, measures, numbers without dimensions, and of each
     particle's forces ``F_e_x``, ``F_e_y``, ``F_e_z`` and ``lifts``, numbered if there are several.
     """
-    row = {"status": found["status"]} | found["measures"] | found.get("dimensionless", {})
+    row = {"status": found["status"], "units": found.get("units", DIMENSIONLESS)}
+    row |= found["measures"] | found.get("dimensionless", {})
     for k, force in enumerate(found["forces"]):
         mark = f"_{k}" if len(found["forces"]) > 1 else ""
         row |= {f"F_e_{axis}{mark}": v for axis, v in zip("xyz", force["F_e"], strict=True)}

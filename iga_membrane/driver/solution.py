@@ -14,8 +14,10 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import integer, items, mapping, real
 from ..lazy import part
+from ..overview import Overview, Told
 from ..own import complaints
 from ..problems.scene import Scene
+from ..quantities import DIMENSIONLESS, told_value
 from ..results.forces import ParticleForces
 from ..solids import Sphere
 from ..solvers.load_path import Bracket, LoadStep, Progress
@@ -28,7 +30,7 @@ from ..terms import BodyDensity
 from ..verification.evidence import Audit
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 @checked(
     measures=mapping,
     unknowns=partial(integer, least=0),
@@ -38,7 +40,7 @@ from ..verification.evidence import Audit
     cpu_seconds=mapping,
     volume_error=real,
 )
-class Solution:
+class Solution(Told):
     """What a solve found.
 
     Attributes
@@ -192,13 +194,33 @@ class Solution:
         """Energy per area of the membrane."""
         return self.scene.by_form.tension
 
+    def overview(self) -> Overview:
+        """Its status, measures with units, stability and effort."""
+        system = self.scene.unit_system
+        rows = [(name, told_value(name, value, system)) for name, value in self.measures.items()]
+        rows += [(name.replace("_", " "), f"{v:.6g}") for name, v in self.dimensionless.items()]
+        if self.lambda_min is not None:
+            verdict = f"index {self.index}, smallest eigenvalue {self.lambda_min:.4g}"
+            rows.append(("stability", verdict))
+        seconds = self.cpu_seconds.get("solve", 0.0)
+        effort = f"{self.unknowns} unknowns, {self.newton_iterations} iterations, {seconds:.2f} s"
+        rows += [("effort", effort), *(("warning", text) for text in self.warnings)]
+        kind = self.scene.kind.replace("_", " ")
+        return Overview(f"{self.status.name}, {kind}, {system}: {self.message}", rows)
+
+    def portrait(self) -> bytes | None:
+        """A small picture of it (PNG), where this machine can draw."""
+        return part("view.portrait", "portrait")(self)
+
     def summary(self) -> str:
         """Status, measures, effort, in a few lines."""
         lines = [f"{self.status.name}: {self.message}"]
         lines += [
-            f"  {name:<24} n/a" if value is None else f"  {name:<24}{value: .10g}"
+            f"  {name:<24} {told_value(name, value, self.scene.unit_system, 10)}"
             for name, value in self.measures.items()
         ]
+        if self.scene.unit_system == DIMENSIONLESS:
+            lines.append(f"  {'units':<24} dimensionless: the numbers given had none")
         numbers = ", ".join(
             f"{name.replace('_', ' ')} {value:.6g}" for name, value in self.dimensionless.items()
         )

@@ -12,8 +12,10 @@ from ..arrays import Array
 from ..assembly.lagrangian import Assembly
 from ..errors import SceneError, SolveError, StateError
 from ..fields import path_values
+from ..overview import Overview, Told
 from ..own import begin, called
 from ..problems.scene import Ramp, Scene
+from ..quantities import DIMENSIONLESS, told_value
 from ..solvers.load_path import Bracket, LoadStep
 from ..solvers.load_stepping import load_stepping
 from ..solvers.newton import NewtonResult
@@ -32,9 +34,9 @@ SAME = 1e-3
 own mesh are the same equilibrium."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 @checked()
-class Path:
+class Path(Told):
     """Equilibria along a parameter.
 
     Attributes
@@ -49,6 +51,31 @@ class Path:
     values: Sequence[float]
     solutions: Sequence[Solution]
     end: Solution
+
+    def overview(self) -> Overview:
+        """How it ended, and its measures from the first value to the last."""
+        system = self.end.scene.unit_system
+        reached = f"{len(self.values)} values of {self.parameter}"
+        rows = [("ended", f"{self.end.status.name}: {self.end.message}")]
+        if self.solutions:
+            first, last = self.solutions[0].measures, self.solutions[-1].measures
+            ends = told_value(self.parameter, self.values[-1], system)
+            rows.insert(0, (self.parameter, f"{self.values[0]:.6g} to {ends}"))
+            rows += [
+                (name, f"{told_value(name, first[name], DIMENSIONLESS)} to "
+                       f"{told_value(name, value, system)}")
+                for name, value in last.items() if name in first
+            ]  # fmt: skip
+        return Overview(f"path, {system}: {reached}", rows)
+
+    def portrait(self) -> bytes | None:
+        """A small picture of its end (PNG), where this machine can draw."""
+        return self.end.portrait()
+
+    @property
+    def units(self) -> str:
+        """Of its numbers: "SI" or "dimensionless"."""
+        return self.end.scene.unit_system
 
     @property
     def success(self) -> bool:

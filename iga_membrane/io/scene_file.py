@@ -18,7 +18,9 @@ from ..errors import SceneError
 from ..fields import path_values
 from ..files import read_file
 from ..initial.liquid import MODELS
+from ..problems.recipe import in_its_units
 from ..problems.scene import Ramp, Scene
+from ..quantities import DIMENSIONLESS, SI, has_units, in_numbers
 from .scene_keys import KEYS, check_values, later, table_of
 from .scene_readers import FOREIGN, READERS, solver_limits
 
@@ -94,7 +96,10 @@ def read_scene(data: Any) -> SceneFile:
     ------
     SceneError
     """
-    data = table_of("", data)
+    data = in_numbers("", table_of("", data))
+    choice("units", data.get("units", DIMENSIONLESS), (SI, DIMENSIONLESS))
+    if has_units(data):
+        data["units"] = SI
     if "schema" in data and data["schema"] != SCHEMA:
         raise SceneError(
             f"schema = {data['schema']!r}: this version reads schema {SCHEMA}; leave the key out "
@@ -112,7 +117,8 @@ def read_scene(data: Any) -> SceneFile:
     limits = solver_limits(tables["solver"], kind)
     if data.get("path"):
         return SceneFile(_along_path(data), limits)
-    return SceneFile(READERS[kind](data, tables), limits)
+    scene = READERS[kind](data, tables)
+    return SceneFile(in_its_units(scene, si=data.get("units") == SI), limits)
 
 
 def _tables(data: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:

@@ -11,7 +11,7 @@ from ..fields import FIELDS, keys_of
 from ..problems.osman_sauer import WholeMembrane
 
 TABLES = tuple(dict.fromkeys(field.partition(".")[0] for field in FIELDS))
-KEYS = {"": ("schema", "scene", *TABLES), **{table: keys_of(table) for table in TABLES}}
+KEYS = {"": ("schema", "scene", "units", *TABLES), **{table: keys_of(table) for table in TABLES}}
 """Table to its keys: those of the contract; what is not built is refused by name."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from .. import checks
 from ..checks import SMALLEST_ANGLE, Rule
 from ..fields import FIELDS, LONGEST_PATH, keys_of, path_values, table
+from ..quantities import DIMENSIONLESS, SI, SIZES, dimension_of
 from .scene_file import SCENES, SCHEMA
 from .scene_keys import TABLES
 from .scene_readers import FOREIGN
@@ -35,7 +37,11 @@ def scene_schema() -> Schema:
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "scene file of iga_membrane",
         "type": "object",
-        "properties": {"schema": {"const": SCHEMA}, "scene": {"enum": list(SCENES)}}
+        "properties": {
+            "schema": {"const": SCHEMA},
+            "scene": {"enum": list(SCENES)},
+            "units": {"enum": [SI, DIMENSIONLESS]},
+        }
         | tables
         | several,
         "required": ["scene"],
@@ -55,8 +61,18 @@ def _table(name: str) -> Schema:
 
 
 def _object(rules: Mapping[str, Rule]) -> Schema:
-    keys = {key: schema_of(rule) for key, rule in rules.items()}
+    keys = {key: _with_units(schema_of(rule), dimension_of(key)) for key, rule in rules.items()}
     return {"type": "object", "properties": keys, "additionalProperties": False}
+
+
+def _with_units(schema: Any, dimension: str) -> Any:
+    """A schema whose numbers may also be text with a unit."""
+    if not dimension or "type" not in schema or schema["type"] == "object":
+        return schema
+    if schema["type"] == "array":
+        return schema | {"items": _with_units(schema["items"], dimension)}
+    units = "|".join(map(re.escape, SIZES[dimension]))
+    return {"anyOf": [schema, {"type": "string", "pattern": rf"^[-+.\deE]+ ({units})$"}]}
 
 
 def schema_of(rule: Rule) -> Schema:

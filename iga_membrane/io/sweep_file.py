@@ -10,6 +10,7 @@ from typing import Any
 from ..checks import number
 from ..errors import SceneError
 from ..problems.scene import Scene
+from ..quantities import SI, has_units, in_numbers
 from .scene_file import read_scene, read_tables, with_number
 
 
@@ -66,7 +67,9 @@ def read_sweep(data: Any) -> SweepFile:
     SceneError
     """
     tables = dict(data) if isinstance(data, Mapping) else {}
-    entries = tables.pop("over", None)
+    entries = in_numbers("over", tables.pop("over", None))
+    if has_units(entries):
+        tables["units"] = SI
     if not isinstance(entries, list) or not entries:
         raise SceneError(f"over = {entries!r}: one or more [[over]] tables are needed in a sweep")
     over: dict[str, list[float]] = {}

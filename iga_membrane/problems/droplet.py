@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -158,7 +158,7 @@ def sessile_droplet(
             "substrate": substrate,
             "volume": volume,
             "liquid": liquid,
-            "gravity": [float(g) for g in acceleration],
+            "gravity": list(cast(Sequence[float], gravity)),
             "discretization": replace(mesh, model=built.sector.model),
             "hold": hold,
             "contact_line": contact_line,

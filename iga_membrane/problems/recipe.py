@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import Any, TypeVar
+from functools import wraps
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from ..checks import choice, listed
+from ..checks import choice, listed, refusal
 from ..errors import SceneError
 from ..fields import keys_of
 from ..lazy import part
+from ..quantities import SI, has_units
 
 HOMES = {
     "sessile_droplet": "problems.droplet",
@@ -26,9 +28,35 @@ Family = TypeVar("Family", bound=Callable[..., Any])
 
 
 def family(build: Family) -> Family:
-    """Decorate a function that builds the scenes of a family: recipes know it by its name."""
-    _FAMILIES[build.__name__] = build
-    return build
+    """Decorate a function that builds the scenes of a family: recipes know it by its name, and
+    its scenes say in which units they are."""
+
+    @wraps(build)
+    def with_units(*arguments: Any, **named: Any) -> Any:
+        return in_its_units(build(*arguments, **named))
+
+    _FAMILIES[build.__name__] = with_units
+    return cast(Family, with_units)
+
+
+def in_its_units(scene: Any, *, si: bool = False) -> Any:
+    """A scene whose description says that it is in SI, where it is: numbers were given with units.
+
+    Raises
+    ------
+    SceneError
+        A scene in SI whose tension was left out.
+    """
+    recipe = scene.recipe
+    if not (si or has_units([scene.particles, recipe and recipe.arguments])):
+        return scene
+    tension = scene.description["liquid"]["surface_tension"]
+    if tension == 1.0 and not has_units(tension):
+        raise refusal(
+            "liquid.surface_tension", tension, "was left out or has no unit, beside numbers that "
+            "have units", "give it with its own, like '72.8 mN/m'",
+        )  # fmt: skip
+    return replace(scene, description={**scene.description, "units": SI})
 
 
 @dataclass(frozen=True)
@@ -153,7 +181,7 @@ def _scaled(gravity: Any, size: float) -> Any:
 
 
 def _component(before: Any, index: int | None, value: float, path: str) -> Any:
-    """A value, or a list with one of its components changed."""
+    """A value, or a list with one of its components changed, in the units of the one before."""
     value = int(value) if float(value).is_integer() else value
     if index is None:
         return value

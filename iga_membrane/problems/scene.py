@@ -14,6 +14,8 @@ from ..arrays import Array
 from ..checks import array, listed, number, record, words
 from ..dofs.boundary_conditions import Sector, Support, Supports
 from ..errors import SceneError
+from ..overview import Overview, Told, flat_rows
+from ..quantities import DIMENSIONLESS
 from ..solids import Plane, Solid, Sphere
 from ..splines import Grading
 from ..surface.surface import Surface
@@ -23,6 +25,9 @@ from ..terms.terms import Terms
 from .changed import Origin, adapted, origin_of
 from .recipe import Recipe
 from .well_posed import check_mirrors, check_parts
+
+OF_TITLE = ("scene", "units")
+"""Words of a description that stand in the title of an overview."""
 
 
 @dataclass(frozen=True)
@@ -154,14 +159,14 @@ class FreeParticles:
         return scene
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 @checked(
     directions=partial(array, shape=(None, 3)),
     motion="solver.motion",
     hold=words("", "x", "xy", "xyz"),
     liquid_density="liquid.density",
 )
-class Scene:
+class Scene(Told):
     """Everything a solve needs to know.
 
     Attributes
@@ -295,6 +300,18 @@ class Scene:
         if held or not (kinds.on_plane or lies_on_it):
             return ""
         return "".join(axis for axis in "xy" if axis not in self.sector.mirrored)
+
+    def overview(self) -> Overview:
+        """Its kind and its description, a row for each table of the scene file."""
+        words = {key: value for key, value in self.description.items() if key not in OF_TITLE}
+        words = words or {"terms": [term.name for term in self.terms]}
+        rows = [*flat_rows(words), *(("warning", text) for text in self.warnings)]
+        return Overview(f"{self.kind.replace('_', ' ')}, {self.unit_system}", rows)
+
+    @property
+    def unit_system(self) -> str:
+        """Of its numbers: "SI" if they were given with units, else "dimensionless"."""
+        return str(self.description.get("units", DIMENSIONLESS))
 
     @property
     def units(self) -> Scale:

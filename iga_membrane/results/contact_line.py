@@ -11,6 +11,7 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import integer
 from ..contact.unfitted import Unfitted
+from ..overview import brief_repr
 from ..quadrature import gauss
 from ..solids import Sphere
 from ..splines.space import EDGES, line
@@ -35,6 +36,8 @@ class ContactLine:
     conormal: Array
     angle: Array
     arc: Array
+
+    __repr__ = brief_repr
 
 
 @checked(edge=line, points=partial(integer, least=1, most=64))

@@ -19,6 +19,7 @@ from ..arrays import Array, Index
 from ..assembly.lagrangian import Assembly
 from ..contact.unfitted import is_unfitted
 from ..dofs.symmetry import mirrors
+from ..overview import brief_repr
 from ..problems.scene import Scene
 from ..solids import Sphere
 from ..splines import points_of
@@ -54,6 +55,8 @@ class ParticleForces:
     buoyancy: Array
     torque: Array
     paper: Mapping[str, float] = field(repr=False)
+
+    __repr__ = brief_repr
 
     @property
     def effective(self) -> Array:

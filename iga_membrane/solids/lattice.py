@@ -13,6 +13,7 @@ from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import POSITIVE, Rule, array, contact_angle, items, listed, number, refusal, vector
 from ..errors import SceneError
+from ..overview import brief_repr
 from .nearest import Nearest, closer, nearest_of_balls
 
 
@@ -162,6 +163,8 @@ class Spheres:
     centers: Sequence[Sequence[float]] | Array
     radii: float | Sequence[float] | Array
     base: float | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         count = len(self.centers)

@@ -11,6 +11,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array, Index, Mask
 from ..checks import ndarray
+from ..overview import brief_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,8 @@ class Nearest:
     which: Index
     ridge: Array | None = None
     turn: Array | None = None
+
+    __repr__ = brief_repr
 
     @classmethod
     def computed(

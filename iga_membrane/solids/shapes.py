@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..overview import brief_repr
 
 GONE = 18.0
 """Distance beyond a pillar's border over its width at which ``1 + tanh`` is rounding."""
@@ -132,6 +133,8 @@ class Grid:
     x: Array
     y: Array
     z: Array
+
+    __repr__ = brief_repr
 
     @property
     def limits(self) -> tuple[Array, Array]:

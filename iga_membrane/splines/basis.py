@@ -18,6 +18,7 @@ from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import POSITIVE, Rule, array, either, function, integer, items, refusal, words
 from ..errors import SceneError
+from ..overview import brief_repr
 from ..own import called
 from .bernstein import bernstein, extraction
 from .knots import DEGREE, ELEMENTS, check_knots, greville, increasing, open_knots
@@ -58,6 +59,8 @@ class Basis:
     periodic: bool = False
     knots: Array | None = field(default=None, repr=False)
     joints: tuple[float, ...] = ()
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         """One operator and one set of functions for each element."""

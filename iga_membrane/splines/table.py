@@ -11,6 +11,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import ndarray
+from ..overview import brief_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,8 @@ class Table:
     parameters: Array
     second: Array | None = None
     kinds: Index | None = None
+
+    __repr__ = brief_repr
 
     @cached_property
     def alike(self) -> list[Index]:
@@ -135,6 +138,8 @@ class EdgeTable:
     weights: Array
     repeated: Index = field(default_factory=lambda: np.zeros(0, int))
 
+    __repr__ = brief_repr
+
     def with_columns(self, columns: Index, functions: Index) -> EdgeTable:
         """Some local functions once more, under other numbers (elements, len(columns))."""
         return EdgeTable(
@@ -165,3 +170,5 @@ class LineTable:
     weights: Array
     across: Index
     rising: Index
+
+    __repr__ = brief_repr

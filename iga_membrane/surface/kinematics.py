@@ -14,6 +14,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import ndarray
+from ..overview import brief_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,8 @@ class Kinematics:
     position: Array
     tangents: Array
     second: Array | None = field(default=None, repr=False)
+
+    __repr__ = brief_repr
 
     @cached_property
     def area_vector(self) -> Array:

@@ -13,11 +13,11 @@ from ..arguments import checked
 from ..arrays import Array
 from ..checks import either, items, text
 from ..errors import SceneError
+from ..quantities import DIMENSIONLESS, labelled
 from .figure import figure, write_figure
 
 LABELS = {
-    "contact_angle": "contact angle (degrees)",
-    "angle": "contact angle (degrees)",
+    "angle": "contact angle (deg)",
     "acceleration": "acceleration of gravity",
     "bond": "Bond number",
     "bond_number": "Bond number",
@@ -79,18 +79,19 @@ def plot_curves(
     low, high = axes.get_ylim()
     if low < 0.0 < high:
         axes.axhline(0.0, color="0.6", lw=0.8, zorder=0)
-    axes.set(xlabel=_label(x), ylabel=_label(names[0]) if len(names) == 1 else "")
+    axes.set(xlabel=_label(x, table), ylabel=_label(names[0], table) if len(names) == 1 else "")
     if by is not None:
-        axes.legend(title=_label(by), title_fontsize=8, frameon=False, fontsize=8)
+        axes.legend(title=_label(by, table), title_fontsize=8, frameon=False, fontsize=8)
     if len(names) > 1:
-        _tell_styles(made, axes, names, "C0" if by is None else "black")
+        _tell_styles(
+            made, axes, [_label(name, table) for name in names], "C0" if by is None else "black"
+        )
     write_figure(made, path)
 
 
-def _tell_styles(made: Any, axes: Any, names: Sequence[str], color: str) -> None:
+def _tell_styles(made: Any, axes: Any, told: Sequence[str], color: str) -> None:
     """A legend of the styles of several columns."""
-    styles = [axes.plot([], [], ls, color=color)[0] for ls in STYLES[: len(names)]]
-    told = [_label(name) for name in names]
+    styles = [axes.plot([], [], ls, color=color)[0] for ls in STYLES[: len(told)]]
     made.legend(styles, told, loc="outside upper center", ncols=2, frameon=False, fontsize=8)
 
 
@@ -155,7 +156,9 @@ def plot_phases(
         axes.contour(xs, ys, known, [0.0], colors="black", linewidths=1.2)
     solved = np.isfinite(values)
     axes.plot(across[solved], up[solved], ".", ms=2, color="0.45")
-    axes.set(xlabel=_label(x), ylabel=_label(y), xlim=axes.get_xlim(), ylim=axes.get_ylim())
+    axes.set(
+        xlabel=_label(x, table), ylabel=_label(y, table), xlim=axes.get_xlim(), ylim=axes.get_ylim()
+    )
     key = [Patch(color=c, label=n) for c, n in zip(colours, names, strict=True)]
     if curve is not None:
         key += axes.plot(curve[1], curve[2], "--", color="C3", lw=1.5, label=curve[0])
@@ -170,7 +173,8 @@ def _column(table: Table, name: str) -> Array:
     return values
 
 
-def _label(name: str) -> str:
-    """The last part of a path in the scene file says what a parameter is."""
+def _label(name: str, table: Table) -> str:
+    """The last part of a path in the scene file says what a parameter is; with its unit."""
     plain = name.rsplit(".", 1)[-1]
-    return LABELS.get(plain, plain if plain.startswith("F_") else plain.replace("_", " "))
+    text = LABELS.get(plain, plain if plain.startswith("F_") else plain.replace("_", " "))
+    return labelled(plain, text, getattr(table, "units", DIMENSIONLESS))

@@ -25,6 +25,7 @@ from ..checks import (
 )
 from ..driver.solution import Solution
 from ..errors import SceneError
+from ..quantities import labelled
 from .drawing import check_drawing, pyvista, trial
 from .marks import add_forces, add_lines
 from .mesh import RESOLUTION, membrane, outside, trimming_solid
@@ -193,7 +194,7 @@ def _colours(
 ) -> dict[str, Any]:
     """How to colour the mesh by a field on it."""
     unit = solution.scene.units
-    title = name.replace("_", " ")
+    title = labelled(name, name.replace("_", " "), solution.scene.unit_system)
     bar = {"title": title, "color": "black", "fmt": "%.3g", "vertical": True,
            "position_x": 0.86, "position_y": 0.25, "height": 0.5,
            "title_font_size": 26, "label_font_size": 24}  # fmt: skip

@@ -28,7 +28,7 @@ def line_rows(solution: Solution) -> list[Row]:
         line = each.line
         vectors = {"": line.position, "tangent_": line.tangent, "conormal_": line.conormal}
         for k in range(len(line.arc)):
-            row: dict[str, Any] = {"solid": each.solid}
+            row: dict[str, Any] = {"solid": each.solid, "units": solution.scene.unit_system}
             for name, values in vectors.items():
                 row |= _xyz(name, values[k])
             angle = float(np.degrees(line.angle[k]))
@@ -63,7 +63,7 @@ def force_rows(solution: Solution) -> list[Row]:
         rows.append(
             {"solid": "substrate", **_xyz("F_", force), "wet_area": float(contact["wet_area"])}
         )
-    return rows
+    return [{**row, "units": scene.unit_system} for row in rows]
 
 
 def field_dataset(solution: Solution, resolution: int) -> Any:
@@ -86,7 +86,11 @@ def field_dataset(solution: Solution, resolution: int) -> Any:
     return xarray.Dataset(
         values | {name: ((*plane, "axis"), vector) for name, vector in vectors.items()},
         coords={"xi1": s, "xi2": t, "axis": ["x", "y", "z"]},
-        attrs={"status": solution.status.name, **_plain(solution.measures)},
+        attrs={
+            "status": solution.status.name,
+            "units": solution.scene.unit_system,
+            **_plain(solution.measures),
+        },
     )
 
 

@@ -74,6 +74,7 @@ def write_vtu(solution: Solution, path: str) -> None:
         values = field(solution, name, at)
         if np.isfinite(values).all():
             made.point_data[name] = to_coefficients(values)
+    made.field_data["units"] = [solution.scene.unit_system]
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(made)
     writer.SetDataModeToBinary()

@@ -143,14 +143,15 @@ EXPRESSION = "__import__('os').system('touch evaluated')"
 
 @pytest.mark.parametrize(("table", "key"), FIELDS)
 def test_every_field_refuses_a_wrong_type(table, key, tmp_path, monkeypatch):
-    """Text, with a unit or to be evaluated (X5), is no number; a number is no text."""
+    """Text without a unit, with one of what the field is not, or to be evaluated (X5), is no
+    number; a number is no text."""
     monkeypatch.chdir(tmp_path)
     if key in (*TEXTS, "file"):
         wrong = [5, True]
     elif key in ("liquid_weight", "follow_instability"):
         wrong = [1, "true"]
     else:
-        wrong = ["1", "72 mN/m", "1 uL", "1 banana", EXPRESSION, True]
+        wrong = ["1", "72 N m", "1 MN/m", "1 banana", EXPRESSION, True]
     for value in (*wrong, {"a": 1}, None, [[[]]]):
         refused(lambda v=value: iga.read_scene(with_value(table, key, v)), table, key, value)
     assert not list(tmp_path.iterdir())
@@ -225,7 +226,7 @@ PLANE = iga.Plane(contact_angle=90)
         (lambda: iga.sessile_droplet(PLANE, volume=1.0, discretization=8), "discretization = 8"),
         (lambda: iga.sessile_droplet(PLANE, volume=1.0, gravity=[0, 1]), "three numbers"),
         (lambda: iga.sessile_droplet(PLANE, volume=1.0, gravity="g"), "gravity"),
-        (lambda: iga.sessile_droplet(PLANE, volume="1 uL"), "liquid.volume = '1 uL'"),
+        (lambda: iga.sessile_droplet(PLANE, volume="1 mm"), "liquid.volume = '1 mm'"),
         (lambda: iga.liquid_sheet(3.0, size=5.0), "particle = 3.0"),
         (lambda: iga.liquid_sheet(size=5.0, liquid_weight=1), "liquid_weight = 1"),
         (lambda: iga.liquid_sheet(size=2.0, pressure=1.0, volume=1.0), "pressure, sheet.volume"),
