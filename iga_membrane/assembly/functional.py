@@ -67,7 +67,7 @@ class Functional:
         space, sector = surface.space, scene.sector
         self.copies = sector.copies
         self._mirrored = [axis in sector.mirrored for axis in "xyz"]
-        self._supports = scene.local_supports()
+        self._supports, self._kind = scene.local_supports(), scene.motion
         self.spines = _motion(scene, surface, self._supports)
         self.size = self.spines.size
         ring = space.bases[0]
@@ -94,7 +94,8 @@ class Functional:
         self._kept = self.spines.on(surface)
 
     def load(self, scene: Scene) -> None:
-        """Take the terms of another scene of the same space, whose supports move the same edges.
+        """Take the terms of another scene of the same space, whose supports move the same edges,
+        and its motion.
 
         Raises
         ------
@@ -102,10 +103,14 @@ class Functional:
             Contact areas in the one, contact lines inside the membrane in the other.
         """
         terms, supports = scene.local_terms(), scene.local_supports()
-        if supports != self._supports:
-            self._supports = supports
+        if (supports, scene.motion) != (self._supports, self._kind):
             self.spines = _motion(scene, scene.local_surface(), supports)
+            self.size = self.spines.size
             self.rows = Rows(self.spines, self.table)
+        if scene.motion != self._kind:
+            self.stabilizer = Unstabilized()
+            self.contact = model_of(scene, self._start, self.points, self.rows)
+        self._supports, self._kind = supports, scene.motion
         self.constraints = terms.constraints
         self.tension = terms.tension
         self.gaps = terms.gaps
@@ -235,5 +240,5 @@ class Functional:
 def _motion(scene: Scene, surface: Surface, supports: Supports) -> Spines:
     """The motion that a scene asks for."""
     if scene.motion == "cartesian":
-        return Cartesian(surface, supports)
+        return Cartesian(surface, supports, scene.directions)
     return Spines(surface, supports, scene.directions)

@@ -89,7 +89,7 @@ def strategy_of(scene: Scene) -> FirstSuccess:
 
 def _in_load_steps(run: Run, before: Outcome | None) -> tuple[Outcome, bool]:
     found = quasi_static(run.scene, run.assembly, run.settings, run.report)
-    return Outcome(run.scene, *found), True
+    return Outcome(*found), True
 
 
 def _to_tangent_edges(run: Run, before: Outcome | None) -> tuple[Outcome, bool]:

@@ -144,12 +144,13 @@ class Matrix:
             self._sparse = csc_array((self.data, pattern.rows, pattern.starts), shape)
         return self._sparse
 
-    def __matmul__(self, vector: Array) -> Array:
+    def __matmul__(self, right: Array) -> Array:
+        """The product with (n,) or (n, k)."""
         if self.pattern is None:
-            return np.asarray(self.dense() @ vector)
+            return np.asarray(self.dense() @ right)
         first = self.pattern.size
-        near = self.sparse() @ vector[:first]
-        return np.append(near, self.full[:first].T @ vector[:first]) + self.full @ vector[first:]
+        near, far = self.sparse() @ right[:first], self.full[:first].T @ right[:first]
+        return np.concatenate([near, far]) + self.full @ right[first:]
 
 
 class Contributions(Matrix):
@@ -206,20 +207,22 @@ class Bordered:
     def solve(
         self, top: Array, bottom: Array, accuracy: float = 1e-13, lost: float = LOST
     ) -> tuple[Array, Array]:
-        """``K s + B q = top``, ``B^T s = bottom``, refined down to a relative defect of
-        ``accuracy``; one above ``lost`` is refused."""
-        s, q = np.zeros(self._n), np.zeros(self._m)
+        """``K s + B q = top`` (n,) or (n, k), ``B^T s = bottom`` (m,) or (m, k), each refined down
+        to a relative defect of ``accuracy``; one above ``lost`` is refused."""
+        s, q = np.zeros_like(top), np.zeros_like(bottom)
         r_top, r_bottom = top, bottom
-        size = np.linalg.norm(np.append(top, bottom))
+        size = np.linalg.norm(np.concatenate([top, bottom]), axis=0)
         for _ in range(REFINEMENTS):
             ds, dq = self._solve_once(r_top, r_bottom)
             s, q = s + ds, q + dq
             r_top, r_bottom = self._defect(s, q, top, bottom)
-            miss = np.linalg.norm(np.append(r_top, r_bottom))
-            if miss <= accuracy * size:
+            miss = np.linalg.norm(np.concatenate([r_top, r_bottom]), axis=0)
+            if np.all(miss <= accuracy * size):
                 break
-        if not miss <= lost * size:
-            raise SingularMatrix(f"the linear solve leaves a relative defect of {miss / size:.1e}")
+        if not np.all(miss <= lost * size):
+            raise SingularMatrix(
+                f"the linear solve leaves a relative defect of {np.max(miss / size):.1e}"
+            )
         return s, q
 
     def stiffened(self, block: Array) -> Bordered:
@@ -251,14 +254,13 @@ class Bordered:
     def last(self, count: int) -> Array:
         """(count, count) Hessian of the last unknowns when all the others follow them."""
         unit = np.eye(self._n, count, count - self._n)
-        zero = np.zeros(self._m)
-        follow = [self.solve(column, zero)[0][self._n - count :] for column in unit.T]
-        return np.linalg.inv(0.5 * (np.array(follow) + np.array(follow).T))
+        follow = self.solve(unit, np.zeros((self._m, count)))[0][self._n - count :]
+        return np.linalg.inv(0.5 * (follow + follow.T))
 
     def _defect(self, s: Array, q: Array, top: Array, bottom: Array) -> tuple[Array, Array]:
         r = top - self._matrix @ s - self._border @ q
         if self._shift is not None:
-            r = r - self._shift * s
+            r = r - (self._shift * s.T).T
         return r, bottom - self._border.T @ s
 
     def _dense(self) -> InverseRoot:
@@ -305,8 +307,8 @@ class Bordered:
         s = self._inner.solve(top[: self._first])
         if not self._schur.size:
             return s, bottom
-        rest = np.append(top[self._first :], bottom) - self._outer.T @ s
+        rest = np.concatenate([top[self._first :], bottom]) - self._outer.T @ s
         q = np.linalg.solve(self._schur, rest)
         last = self._n - self._first
-        s = np.append(s - self._outer_solved @ q, q[:last])
-        return s, q[last:] + self._weights * bottom
+        s = np.concatenate([s - self._outer_solved @ q, q[:last]])
+        return s, q[last:] + (self._weights * bottom.T).T

@@ -45,7 +45,8 @@ from .free import frame_of, seat_of
 from .hints import hints
 from .moving import check_fixed, fixed
 from .one_asperity import discretizations as asperity_lines
-from .osman_sauer import WholeMembrane, droplet_with_wetted_part
+from .osman_sauer import WholeMembrane
+from .osman_sauer_droplet import by_whole_membrane
 from .particle_foot import discretizations as particle_lines
 from .recipe import Recipe, family
 from .scene import Scene
@@ -116,8 +117,8 @@ def sessile_droplet(
         "adhesion", it lies on asperities that attract it, for angles near 180 degrees; "auto"
         chooses: on one fixed particle the membrane ends, and where that fails passes through it.
     particles : spheres on its surface, with contact angles, densities and motions.
-    membrane : the paper's formulation, with its own penalty, instead of a contact line as the
-        membrane's edge; on a plane, below 180 degrees.
+    membrane : the paper's formulation, with its own penalty: below 180 degrees on a plane, instead
+        of a contact line as the membrane's edge; at 180 degrees on a plane or asperities.
 
     Raises
     ------
@@ -126,6 +127,8 @@ def sessile_droplet(
         have; a start below the substrate.
     """
     liquid, mesh = with_defaults(liquid, discretization)
+    if membrane is not None:
+        penalty = membrane.penalty_of(substrate, penalty)
     grains = check_particles(particles)
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
     place = _placed(substrate, grains, hold, contact_line, length)
@@ -188,7 +191,7 @@ def sessile_droplet(
         warnings=hints(place.carrier, liquid, volume, pull, tuple(bond)),
     )
     if membrane is not None:
-        return droplet_with_wetted_part(scene, mesh, parts.down, parts.law, start, membrane)
+        return by_whole_membrane(scene, mesh, parts.down, start, membrane)
     if others:
         # a mesh that was chosen for one asperity says nothing of another's discretization
         again = mesh if grains else Discretization()

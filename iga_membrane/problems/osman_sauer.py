@@ -7,11 +7,14 @@ unknowns and the stabilization of eq. (23), and the contact angle is reached in 
 
 The innermost part of the wetted membrane, which lies on the solid in every step, is left out: the
 membrane ends on a fixed circle round the axis.
+
+At 180 degrees there is no contact line: the closed skin of the droplet lies on its solid, a plane
+or asperities, and the weight is the load (section 6.1, figures 5 and 6).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -19,15 +22,15 @@ from typing import Any
 import numpy as np
 
 from ..arguments import checked
-from ..arrays import Array
 from ..checks import integer
 from ..dofs.boundary_conditions import Fixed, Sector, Support
 from ..errors import SceneError
-from ..initial.liquid import Discretization, Liquid, Mesh, space_name
-from ..initial.profiles import Pancake, funnel, least_energy_pancake
-from ..solids import Plane, Sphere
+from ..initial.liquid import Liquid, Mesh, space_name
+from ..initial.profiles import funnel
+from ..solids import Plane, Solid, Sphere
+from ..solids.wettability import least_angle
 from ..splines import Grading, Space, points_of
-from ..surface.ring import circle, drop_space, meridian_interpolation, ring_space, square
+from ..surface.ring import circle, meridian_interpolation, ring_space, square
 from ..surface.surface import Surface
 from ..terms import (
     Contact,
@@ -38,6 +41,7 @@ from ..terms import (
     Stabilization,
     SurfaceTension,
     Term,
+    Volume,
 )
 from .scene import Ramp, Scene
 
@@ -60,7 +64,8 @@ class WholeMembrane:
     projected : whether the stabilization acts along tangent planes only.
     penalty : traction over depth, times the scene's length squared over gamma; the paper's is 1e4.
     load_steps : equal steps of the contact angle, from 150 degrees (or the angle itself, if larger)
-        on; steps at the last angle follow until the stabilization has relaxed.
+        on; steps at the last angle follow until the stabilization has relaxed. At 180 degrees steps
+        of the weight, after which the membrane settles without stabilization.
     penetration_tolerance : depth over the sphere's radius (plane: over the length) beyond which a
         state is no success.
     """
@@ -70,6 +75,22 @@ class WholeMembrane:
     penalty: float = 1e4
     load_steps: int = 20
     penetration_tolerance: float = 1e-2
+
+    def penalty_of(self, solid: Solid | None, penalty: float | None) -> float | None:
+        """The penalty of a skin that lies on its solid at 180 degrees; below, None.
+
+        Raises
+        ------
+        SceneError
+            Another penalty was given.
+        """
+        if penalty is not None:
+            raise SceneError(
+                f"solver.penalty = {penalty:g}: the paper's formulation has a penalty of its own; "
+                "give that, WholeMembrane(penalty=...)"
+            )
+        lies = solid is not None and least_angle(solid.contact_angle) == 180.0
+        return self.penalty if lies else None
 
 
 def sheet_with_wetted_part(
@@ -82,26 +103,36 @@ def sheet_with_wetted_part(
     sector: Sector,
     how: WholeMembrane,
     description: Mapping[str, Any],
+    bodies: Sequence[Term],
+    curvature: float,
 ) -> Scene:
-    """A sheet without pressure on a particle on its axis (figures 8-10 of the paper)."""
+    """A sheet on a particle on its axis (figures 8-10 of the paper).
+
+    Parameters
+    ----------
+    bodies : what its liquid pays for: pressure or volume, and weight.
+    curvature : pressure over tension.
+    """
     x, y, _ = particle.center
     if x or y:
         raise SceneError('solver.contact_line = "line_load": not available yet off the axis')
-    _check(mesh, sector, particle.contact_angle)
+    check_mesh(mesh, sector, particle.contact_angle)
     gamma = liquid.surface_tension
-    kink = _kink(mesh.elements)
+    kink = kink_of(mesh.elements)
     space = ring_space(
         mesh.space, mesh.degree, mesh.elements, angle=1.0, corners=boundary == "square", kink=kink
     )
     first = Sphere(max(EASY, particle.contact_angle), particle.radius, particle.center)
-    surface = _sheet_start(space, first, 0.5 * size, boundary)
+    surface = _sheet_start(space, first, 0.5 * size, boundary, curvature)
 
-    line = LineOnSolid(particle, gamma, _edge(space))
+    line = LineOnSolid(particle, gamma, edge_of(space))
     scale = Scale(particle.radius, gamma)
+    hole = _under_hole(particle, INNER * funnel(first, 0.5 * size, curvature).polar)
+    held = [replace(t, ends=t.ends + hole) if isinstance(t, Volume) else t for t in bodies]
     supports: list[Support] = [sector, Fixed("xi2=0"), Fixed("xi2=1")]
     scene = Scene(
         surface,
-        [*_skin(particle, gamma, scale, how), *line.terms(first.contact_angle)],
+        [*skin(particle, gamma, scale, how), *held, *line.terms(first.contact_angle)],
         supports,
         scale=scale,
         motion="cartesian",
@@ -109,63 +140,22 @@ def sheet_with_wetted_part(
         kind="liquid_sheet",
         acceleration=(0.0, 0.0, -gravity),
         liquid_density=liquid.density,
-        description=_described(description, mesh, how),
+        description=described(description, mesh, how),
     )
-    return _stepped(scene, "particle[0].contact_angle", first, particle, line, how)
+    return stepped(scene, "particle[0].contact_angle", first, particle, line, how)
 
 
-def droplet_with_wetted_part(
-    scene: Scene,
-    asked: Discretization,
-    bond: float,
-    law: Contact,
-    start: object,
-    how: WholeMembrane,
-) -> Scene:
-    """The paper's formulation of a droplet on a level plane.
-
-    Parameters
-    ----------
-    scene : the same droplet with a contact line as its edge.
-    bond : Bond number of gravity towards the plane.
-    law, start : what else was asked for, of which there is nothing here.
-    """
-    plane = scene.substrate
-    if not isinstance(plane, Plane) or law.penalty is not None or start is not None:
-        raise SceneError(
-            'solver.contact_line = "line_load": not available yet on spheres, from a start, or '
-            "with a penalty besides its own"
-        )
-    mesh = asked.mesh(degree=3, elements=24)
-    _check(mesh, scene.sector, plane.contact_angle)
-    scale, gamma = scene.units, scene.units.tension
-    angle = max(EASY, plane.contact_angle)
-    pancake = least_energy_pancake(angle, bond, 4.0 * np.pi / 3.0)
-    kink = _kink(mesh.elements)
-    space = drop_space(mesh.space, mesh.degree, mesh.elements, kink=kink)
-    local = _droplet_start(space, pancake)
-    first = replace(plane, contact_angle=max(EASY, plane.contact_angle))
-
-    line = LineOnSolid(plane, gamma, _edge(space))
-    kept = [t for t in scene.terms if t.name in ("volume", "gravity")]
-    whole = Scene(
-        local.moved(scale.to_world(local.points)),
-        [*_skin(plane, gamma, scale, how), *kept, *line.terms(first.contact_angle)],
-        [scene.sector, Fixed("xi2=0")],
-        scale=scale,
-        motion="cartesian",
-        substrate=plane,
-        kind=scene.kind,
-        description=_described(scene.description, mesh, how),
-        warnings=scene.warnings,
-    )
-    return _stepped(whole, "substrate.contact_angle", first, plane, line, how)
-
-
-def _described(description: Mapping[str, Any], mesh: Mesh, how: WholeMembrane) -> dict[str, Any]:
+def described(description: Mapping[str, Any], mesh: Mesh, how: WholeMembrane) -> dict[str, Any]:
     """A description with the formulation's own mesh and solver table."""
     model = description["discretization"]["model"]
-    solver = {
+    return dict(description) | {
+        "discretization": mesh.described(model),
+        "solver": solver_table(how),
+    }
+
+
+def solver_table(how: WholeMembrane) -> dict[str, Any]:
+    return {
         "motion": "cartesian",
         "stabilization": how.stabilization,
         "contact": "penalty",
@@ -173,10 +163,9 @@ def _described(description: Mapping[str, Any], mesh: Mesh, how: WholeMembrane) -
         "penetration_tolerance": how.penetration_tolerance,
         "contact_line": "line_load",
     }
-    return dict(description) | {"discretization": mesh.described(model), "solver": solver}
 
 
-def _check(mesh: Mesh, sector: Sector, contact_angle: float) -> None:
+def check_mesh(mesh: Mesh, sector: Sector, contact_angle: float) -> None:
     if contact_angle >= 180.0:
         raise SceneError(
             f"contact_angle = {contact_angle:g}: there is no contact line at 180 degrees, so no "
@@ -198,13 +187,13 @@ def _check(mesh: Mesh, sector: Sector, contact_angle: float) -> None:
         )
 
 
-def _skin(solid: Plane | Sphere, gamma: float, scale: Scale, how: WholeMembrane) -> list[Term]:
+def skin(solid: Plane | Sphere, gamma: float, scale: Scale, how: WholeMembrane) -> list[Term]:
     law = Contact(solid, how.penalty * gamma / scale.length**2, how.penetration_tolerance)
     mu = how.stabilization * gamma
     return [SurfaceTension(gamma), law, Stabilization(mu, how.projected)]
 
 
-def _stepped(
+def stepped(
     scene: Scene,
     parameter: str,
     first: Plane | Sphere,
@@ -261,18 +250,27 @@ class AtAngle:
         return replace(self.scene, terms=[*held, *line], ramp=None, origin=None)
 
 
-def _kink(elements: int) -> int:
+def kink_of(elements: int) -> int:
     """The element at whose start the contact line lies."""
     return max(2, round(WET * elements))
 
 
-def _edge(space: Space) -> str:
+def edge_of(space: Space) -> str:
     return f"xi2={space.bases[1].joints[0]!r}"
 
 
-def _sheet_start(space: Space, particle: Sphere, half: float, boundary: str) -> Surface:
+def _under_hole(particle: Sphere, polar: float) -> float:
+    """Volume between z = 0 and the cap of a sphere inside a polar angle."""
+    a, r = particle.radius * np.sin(polar), particle.radius
+    under = 2.0 / 3.0 * (r**3 - (r * np.cos(polar)) ** 3)
+    return float(-np.pi * (particle.center[2] * a**2 + under))
+
+
+def _sheet_start(
+    space: Space, particle: Sphere, half: float, boundary: str, curvature: float
+) -> Surface:
     """A cap of the sphere from the fixed circle to the line, a funnel from there to the rim."""
-    profile = funnel(particle, half, 0.0)
+    profile = funnel(particle, half, curvature)
     points, matrix = meridian_interpolation(space)
     kink = space.bases[1].joints[0]
     on_solid = points <= kink
@@ -292,20 +290,4 @@ def _sheet_start(space: Space, particle: Sphere, half: float, boundary: str) -> 
     outer = half * (ring if boundary == "circle" else square(space.bases[0]))
     r, up = particle.radius, np.array([0.0, 0.0, 1.0])
     net = r * ring[:, None] * first + outer[:, None] * second + r * sag * up
-    return Surface(space, points_of(space, net))
-
-
-def _droplet_start(space: Space, pancake: Pancake) -> Surface:
-    """A ring on the plane from the fixed circle to the line, a rounded pancake from there on."""
-    points, matrix = meridian_interpolation(space)
-    kink = space.bases[1].joints[0]
-    on_solid = points <= kink
-    r, z = pancake(np.maximum(points - kink, 0.0) / (1.0 - kink))
-    r = np.where(on_solid, r[0] * (INNER + (1.0 - INNER) * np.minimum(points / kink, 1.0)), r)
-    values = np.stack([r, np.where(on_solid, 0.0, z)], axis=1)
-    # at the pole the last value but one is the slope there
-    values[-2] = -pancake.length / (1.0 - kink), 0.0
-    r, z = np.linalg.solve(matrix, values).T
-    ring: Array = circle(space.bases[0])
-    net = ring[:, None] * r[:, None] + np.outer(z, [0.0, 0.0, 1.0])
     return Surface(space, points_of(space, net))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, cast
 
 import numpy as np
@@ -365,6 +365,11 @@ class Scene(Told):
             points[edge, 2] = 0.0
         return self.surface.moved(points)
 
+    def along_spines(self) -> Scene:
+        """The scene without what holds control points in the membrane's plane."""
+        terms = [term for term in self.terms if term not in self.by_form.stabilizations]
+        return replace(self, terms=terms, motion="spines", ramp=None, origin=None)
+
     @property
     def by_form(self) -> Terms:
         """The terms by their form, in the user's units."""
@@ -377,8 +382,16 @@ class Scene(Told):
 
     def local_supports(self) -> Supports:
         """The supports in the scene's scale and frame."""
+        return self._local_supports
+
+    @cached_property
+    def _local_supports(self) -> Supports:
         return Supports(support.scaled(self.units) for support in self.supports)
 
     def local_terms(self) -> Terms:
         """The terms in the scene's scale and frame."""
+        return self._local_terms
+
+    @cached_property
+    def _local_terms(self) -> Terms:
         return Terms(scaled_term(term, self.units) for term in self.terms)

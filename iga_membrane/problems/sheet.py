@@ -222,11 +222,10 @@ def _whole(
     sheet: _Sheet, mesh: Mesh, sector: Sector, start: Surface | None, membrane: WholeMembrane
 ) -> Scene:
     """The sheet by the paper's formulation."""
-    beyond = sheet.pressure or sheet.volume is not None or sheet.liquid_weight
-    if sheet.particle is None or beyond or start is not None:
+    if sheet.particle is None or start is not None:
         raise SceneError(
-            'solver.contact_line = "line_load": not available yet for a sheet without a '
-            "particle, with pressure, volume or the liquid's weight, or from a start"
+            'solver.contact_line = "line_load": not available yet for a sheet without a particle '
+            "or from a start"
         )
     return sheet_with_wetted_part(
         sheet.particle,
@@ -238,6 +237,8 @@ def _whole(
         sector,
         membrane,
         sheet.described(mesh, sector),
+        sheet.bodies(),
+        sheet.curvature,
     )
 
 

@@ -126,7 +126,7 @@ def pull_on_sphere(
     term, edge = assembly.edges.on_spheres[which]
     points, body = surface.points, assembly.density(multipliers)
     if term.covered:
-        return _pull_through(assembly, surface, term.edge)
+        return _pull_through(assembly, surface, term, body)
     total = term.forces(edge, points, term.strength, body).sum(axis=(0, 1))
     total += assembly.edges.push(term.edge, points, assembly.line_load(multipliers))
     _, at = surface.space.edge_place(term.edge)
@@ -161,17 +161,25 @@ def _work(assembly: Assembly, surface: Surface, multipliers: Array, displacement
     return total
 
 
-def _pull_through(assembly: Assembly, surface: Surface, edge: str) -> Pull:
+def _pull_through(
+    assembly: Assembly, surface: Surface, term: SphereContactLine, body: BodyDensity
+) -> Pull:
     """The same where the membrane covers the sphere: its wetted part and the line are carried along
-    whole, so only the tension of the rest changes the energy."""
+    whole, with the cap inside its fixed edge."""
     table, abscissae = assembly.table, surface.space.abscissae[..., 1]
-    _, line = surface.space.edge_place(edge)
-    fading = 1.0 - np.maximum(abscissae - line, 0.0) / (surface.space.bases[1].breaks[-1] - line)
+    _, place = surface.space.edge_place(term.edge)
+    fading = 1.0 - np.maximum(abscissae - place, 0.0) / (surface.space.bases[1].breaks[-1] - place)
     along = points_of(surface.space, fading[..., None])[:, 0]
     at = element_points(table, surface.points)
-    pull = forces(table, at, assembly.tension, BodyDensity())
+    pull = forces(table, at, assembly.tension, body)
     total = -np.einsum("eai,ea->i", pull, along[table.functions])
-    return Pull(assembly.whole(total), np.zeros(3))
+    line, hole = (
+        contact_line(surface, edge, assembly.points[0], term.sphere)
+        for edge in (term.edge, "xi2=0")
+    )
+    inside = WettedCap(hole, term.sphere, term.toward).push(body)
+    pressure = WettedCap(line, term.sphere, term.toward).push(body)
+    return Pull(assembly.whole(total) + [0.0, 0.0, inside[2]], pressure)
 
 
 def particle_forces(

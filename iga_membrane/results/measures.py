@@ -107,8 +107,10 @@ def _surface_energies(
     wet = term.energy(edge, surface.points, 1.0, BodyDensity())
     gain = -(term.strength + term.gamma * term.covered)
     e_surf = assembly.copies * (assembly.tension * area - gain * wet) * scale.energy
+    liquid = volume(assembly, surface) * scale.length**3 + _under_hole(scene, assembly, surface)
+    pressed = sum(t.density().constant for t in scene.by_form.pressures) * liquid
     return {
-        "energy": e_surf + values["E_grav"],
+        "energy": e_surf + values["E_grav"] + pressed,
         "E_surf": e_surf,
         "A_LG": assembly.copies * area * scale.length**2,
         "A_wet": assembly.copies * wet * scale.length**2,

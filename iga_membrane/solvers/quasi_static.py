@@ -1,4 +1,9 @@
-"""Load steps of the paper's formulation: each starts from the metric of the one before."""
+"""Load steps of the paper's formulation: each starts from the metric of the one before.
+
+A membrane that ends on contact lines relaxes at the last load. One that lies on its solid with a
+penalty does not: what the discrete contact leaves along its plane makes it creep for ever. Its
+places in its plane do not matter, so it settles along its spines.
+"""
 
 from __future__ import annotations
 
@@ -35,8 +40,8 @@ def quasi_static(
     assembly: Assembly,
     options: NewtonOptions,
     report: Callable[[float], None] = lambda load: None,
-) -> tuple[NewtonResult, list[LoadStep]]:
-    """Walk the ramp of a scene with a stabilized membrane, then relax at its end.
+) -> tuple[Scene, NewtonResult, list[LoadStep]]:
+    """Walk the ramp of a scene with a stabilized membrane, then relax at its end or settle.
 
     At a fixed load every step takes over the metric of the last one and half its stabilization, so
     the stress of eq. (23) fades until it holds only what the discrete membrane cannot balance in
@@ -44,11 +49,33 @@ def quasi_static(
 
     Returns
     -------
-    The last state and all steps. The stabilization left in the assembly is projected and weak: it
-    only keeps motions in the plane from counting when stability is judged.
+    The scene that was solved at last, its state and all steps. A stabilization left in the assembly
+    is projected and weak: it only keeps motions in the plane from counting when stability is
+    judged.
     """
     ramp = scene.ramp
     assert ramp is not None
+    result, steps = _walked(ramp, scene, assembly, options, report)
+    if result.status is not None:
+        return scene, result, steps
+    if scene.directions is None:
+        return scene, *_relaxed(ramp, assembly, result, options, steps)
+    free = scene.along_spines()
+    assembly.load(free)
+    settled = newton(assembly, result.surface, result.multipliers, None, options)
+    settled.linear_seconds += result.linear_seconds
+    steps.append(LoadStep(1.0, len(settled.iterations), settled.status, ramp.value(1.0)))
+    return free, settled, steps
+
+
+def _walked(
+    ramp: Ramp,
+    scene: Scene,
+    assembly: Assembly,
+    options: NewtonOptions,
+    report: Callable[[float], None],
+) -> tuple[NewtonResult, list[LoadStep]]:
+    """The state at the end of the ramp, or the first that failed, and the steps to it."""
     surface = scene.local_surface()
     result = NewtonResult(surface, np.zeros(assembly.multipliers))
     steps: list[LoadStep] = []
@@ -67,6 +94,17 @@ def quasi_static(
             return tried, steps
         else:
             wanted.insert(0, 0.5 * (load + reached))
+    return result, steps
+
+
+def _relaxed(
+    ramp: Ramp,
+    assembly: Assembly,
+    result: NewtonResult,
+    options: NewtonOptions,
+    steps: list[LoadStep],
+) -> tuple[NewtonResult, list[LoadStep]]:
+    """Steps at the last load, added to those before."""
     given, weakest = _stabilization(ramp(1.0)).mu, FADED * assembly.tension
     while True:
         relaxed, mu, crept = _relax(ramp, assembly, result, options, weakest, steps)

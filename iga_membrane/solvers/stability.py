@@ -196,10 +196,10 @@ def stability(
     rounding = ROUNDED * np.finfo(float).eps * float(np.abs(matrix.diagonal()).max())
     for _ in range(40):
         check_time()
-        vectors = _inverse(factor, np.column_stack([mass @ v for v in vectors.T]), m, accuracy)
+        vectors = _inverse(factor, mass @ vectors, m, accuracy)
         vectors, _ = np.linalg.qr(vectors)
-        k = vectors.T @ np.column_stack([matrix @ v for v in vectors.T])
-        g = vectors.T @ np.column_stack([mass @ v for v in vectors.T])
+        k = vectors.T @ (matrix @ vectors)
+        g = vectors.T @ (mass @ vectors)
         low = np.linalg.cholesky(g)
         reduced = np.linalg.solve(low, np.linalg.solve(low, k).T)
         values, modes = np.linalg.eigh(0.5 * (reduced + reduced.T))
@@ -217,6 +217,5 @@ def stability(
 def _inverse(factor: Bordered, columns: Array, m: int, accuracy: float) -> Array:
     """Solutions of a matrix that may be all but singular: what they miss lies along the modes that
     are looked for."""
-    zero, enough = np.zeros(m), SOLVED * accuracy
-    found = [factor.solve(column, zero, enough, np.inf)[0] for column in columns.T]
-    return np.column_stack(found)
+    zero = np.zeros((m, columns.shape[1]))
+    return factor.solve(columns, zero, SOLVED * accuracy, np.inf)[0]

@@ -5,8 +5,10 @@ import json
 import numpy as np
 import pytest
 from helpers import UNIT_VOLUME
+from taylor import lagrangian_slopes
 
 import iga_membrane as iga
+from iga_membrane.assembly.lagrangian import Assembly
 from iga_membrane.cli import main
 from iga_membrane.reference import drop_on_plane
 
@@ -58,16 +60,86 @@ def test_a_harder_penalty_comes_closer():
 @pytest.mark.parametrize("angle", [110.0])
 def test_flat_droplet(angle):
     exact = drop_on_plane(1.0, angle)
-    mesh = iga.Discretization(degree=3, elements=18)
+    mesh = iga.Discretization(degree=3, elements=12)
     scene = iga.sessile_droplet(
         iga.Plane(angle), volume=UNIT_VOLUME, gravity=1.0, discretization=mesh,
-        membrane=iga.WholeMembrane(load_steps=4),
+        membrane=iga.WholeMembrane(load_steps=2),
     )  # fmt: skip
     found = iga.solve(scene)
     for name in ("energy", "p_base", "height", "contact_radius", "A_LG", "A_wet"):
         assert found.measures[name] == pytest.approx(exact[name], rel=1e-3), name
     assert found.measures["contact_angle_measured"] == pytest.approx(angle, abs=0.1)
     assert found.measures["volume"] == pytest.approx(UNIT_VOLUME, rel=1e-10)
+
+
+LOADS = {
+    "pressure": {"pressure": 0.2},
+    "weight": {"pressure": 0.2, "gravity": 0.5, "liquid_weight": True},
+    "volume": {"volume": 1.0},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", LOADS)
+def test_liquid_above_the_sheet(load):
+    """Section 6.2: "the capillary pressure effect can still be considered"."""
+    particle = iga.Sphere(120.0, 1.0, (0.0, 0.0, -1.0), density=1.0)
+    asked = {"size": 5.0, "boundary": "circle"} | LOADS[load]
+    exact = iga.solve(iga.liquid_sheet(particle, **asked))
+    how = iga.WholeMembrane(load_steps=3, penalty=1e5)
+    found = iga.solve(iga.liquid_sheet(particle, membrane=how, **asked))
+    for name in ("energy", "V_liq", "A_LG", "A_wet", "phi_deg", "F_P", "F_CL", "F_total"):
+        assert found.measures[name] == pytest.approx(exact.measures[name], rel=1e-3), name
+    assert found.forces[0].effective == pytest.approx(exact.forces[0].effective, abs=1e-3)
+
+
+LATTICE = iga.SphereLattice(180.0, radius=0.1, spacing=0.4)
+
+
+@pytest.mark.parametrize(
+    ("solid", "normal"),
+    [
+        (iga.Plane(180.0), (0.0, 0.0, 1.0)),
+        pytest.param(iga.Plane(180.0, normal=(0.0, 0.6, 0.8)), (0.0, 0.6, 0.8),
+                     marks=pytest.mark.slow),
+        pytest.param(LATTICE, (0.0, 0.0, 1.0), marks=pytest.mark.slow),
+    ],
+    ids=["plane", "turned plane", "asperities"],
+)  # fmt: skip
+def test_a_droplet_lies_on_its_solid(solid, normal):
+    """Figures 5 and 6: load steps of the weight, with stabilization, reach what one unknown per
+    control point finds with the same penalty."""
+    asked = {"volume": UNIT_VOLUME, "gravity": [-n for n in normal], "hold": "xy"}
+    mesh = iga.Discretization(elements=32 if solid is LATTICE else 20)
+    own = iga.sessile_droplet(
+        solid, discretization=mesh, penalty=1e4, penetration_tolerance=0.2, **asked
+    )
+    exact = iga.solve(own)
+    how = iga.WholeMembrane(load_steps=4, penetration_tolerance=0.2)
+    found = iga.solve(iga.sessile_droplet(solid, discretization=mesh, membrane=how, **asked))
+    assert found.success
+    assert len(found.load_steps) == 6
+    for name in ("energy", "height", "p_base", "A_LG"):
+        assert found.measures[name] == pytest.approx(exact.measures[name], rel=1e-3), name
+    assert found.measures["volume"] == pytest.approx(UNIT_VOLUME, rel=1e-10)
+    assert found.audit.force < 1e-3
+
+
+def test_three_unknowns_per_control_point_of_a_closed_skin_have_exact_derivatives():
+    scene = iga.sessile_droplet(
+        iga.Plane(180.0), volume=UNIT_VOLUME, gravity=1.0, membrane=iga.WholeMembrane(),
+        discretization=iga.Discretization(elements=6),
+    )  # fmt: skip
+    surface = scene.local_surface()
+    sunk = surface.moved(surface.points - [0.0, 0.0, 0.05])  # all of the foot in contact
+    assembly = Assembly(scene)
+    assembly.begin_step(sunk, scene.local_terms().stabilizations[0])
+    direction = np.random.default_rng(0).uniform(-1.0, 1.0, assembly.size)
+    first, second = lagrangian_slopes(
+        assembly, sunk, np.array([2.0]), assembly.motion(sunk), direction
+    )
+    assert first >= 1.9
+    assert second >= 2.9
 
 
 @pytest.mark.slow
@@ -162,8 +234,7 @@ def test_what_does_not_go_together_is_refused(solver, said):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"pressure": 0.1}, "not available yet"),
-        ({"volume": 0.1}, "not available yet"),
+        ({"start": iga.cap(1.0, 60.0)}, "not available yet"),
         ({"boundary": "circle", "particle": iga.Sphere(180.0, 1.0, (0, 0, -1.0))}, "below|< 180"),
         ({"particle": iga.Sphere(90.0, 1.0, (0.2, 0, -1.0))}, "off the axis"),
         ({"discretization": iga.Discretization(space="lagrange", degree=2)}, "lagrange"),
@@ -184,7 +255,9 @@ def test_sheets_that_are_not_built_are_refused(change, said):
     ("change", "said"),
     [
         ({"substrate": iga.Sphere(90.0, 1.0, (0, 0, -1.0))}, "not available yet"),
-        ({"penalty": 1e4}, "not available yet"),
+        ({"penalty": 1e4}, "a penalty of its own"),
+        ({"substrate": iga.Plane(180.0)}, "steps of the weight"),
+        ({"substrate": iga.SphereLattice(150.0, 0.1, 0.4)}, "below 180 degrees"),
         ({"gravity": [0.3, 0.0, -1.0]}, "quarter"),
     ],
 )
