@@ -108,7 +108,7 @@ class Functional:
             self.size = self.spines.size
             self.rows = Rows(self.spines, self.table)
         if scene.motion != self._kind:
-            self.stabilizer = Unstabilized()
+            self.stabilizer, self._start = Unstabilized(), scene.local_surface()
             self.contact = model_of(scene, self._start, self.points, self.rows)
         self._supports, self._kind = supports, scene.motion
         self.constraints = terms.constraints

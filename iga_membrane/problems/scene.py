@@ -365,10 +365,12 @@ class Scene(Told):
             points[edge, 2] = 0.0
         return self.surface.moved(points)
 
-    def along_spines(self) -> Scene:
-        """The scene without what holds control points in the membrane's plane."""
+    def along_spines(self, surface: Surface) -> Scene:
+        """The scene without what holds control points in the membrane's plane, from a state in its
+        scale."""
         terms = [term for term in self.terms if term not in self.by_form.stabilizations]
-        return replace(self, terms=terms, motion="spines", ramp=None, origin=None)
+        start = surface.moved(self.units.to_world(surface.points))
+        return replace(self, surface=start, terms=terms, motion="spines", ramp=None, origin=None)
 
     @property
     def by_form(self) -> Terms:

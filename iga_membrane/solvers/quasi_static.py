@@ -60,7 +60,7 @@ def quasi_static(
         return scene, result, steps
     if scene.directions is None:
         return scene, *_relaxed(ramp, assembly, result, options, steps)
-    free = scene.along_spines()
+    free = scene.along_spines(result.surface)
     assembly.load(free)
     settled = newton(assembly, result.surface, result.multipliers, None, options)
     settled.linear_seconds += result.linear_seconds

@@ -43,6 +43,20 @@ def test_sheet_and_particle():
 
 
 @pytest.mark.slow
+def test_paper_figures():
+    found = load("paper_figures").main(
+        radius=0.1, load_steps=3, elements=40, only=("5", "6", "7", "10c")
+    )
+    for one in found:
+        for name in one.figure.measures if one.paper else ():
+            assert one.paper.measures[name] == pytest.approx(one.ours.measures[name], rel=5e-3)
+        assert all(row.count("|") == 8 for row in one.rows())
+    # the paper's penalty lets the droplet sink into asperities
+    sunk = next(one for one in found if one.figure.name == "6")
+    assert sunk.paper.measures["height"] < sunk.ours.measures["height"]
+
+
+@pytest.mark.slow
 def test_figure11():
     example = load("figure11")
     curves = example.main(angles=(30.0, 90.0, 170.0), bonds=(0.1, 1.0))
