@@ -15,6 +15,7 @@ TITLES = {
     "Terms": ("terms",),
     "Solving and solutions": ("driver", "solvers", "results", "verification", "status"),
     "Studies": ("analysis",),
+    "Photographs": ("photograph",),
     "Pictures and files": ("view",),
     "Surfaces and their motion": ("surface", "dofs"),
     "Spline spaces": ("splines",),

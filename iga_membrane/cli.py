@@ -9,15 +9,17 @@ import os
 import sys
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from time import process_time
 from typing import Any, TypeVar
 
-from . import __version__
+from .checks import choice
+from .command_line import parser
 from .driver.solution import Solution
 from .driver.solve import solve
 from .errors import GeometryError, OutputError, SceneError, StateError
-from .files import check_folder
+from .files import check_folder, write_whole
 from .io.scene_file import read_scene, read_tables
 from .output_folder import (
     PICTURE,
@@ -42,8 +44,7 @@ File = TypeVar("File")
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code (0 only for a success)."""
-    parser = _parser()
-    given = parser.parse_args(arguments)
+    given = parser(_RUN).parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     progress_log.setLevel(logging.INFO if given.progress else logging.WARNING)
     iterations.setLevel(logging.DEBUG if given.progress else logging.WARNING)
@@ -236,6 +237,55 @@ def _say(text: str) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _fit(given: argparse.Namespace) -> int:
+    """Measure the droplet in a photograph."""
+    from .driver.result_file import finite
+    from .initial.liquid import Liquid
+    from .photograph.fit import fit_profile
+    from .photograph.silhouette import silhouette
+    from .tables import csv_text
+    from .view.overlay import plot_fit
+
+    folder = output_folder("--out", given.out)
+    points = silhouette(given.image, scale=_quantity(given.scale))
+    liquid = Liquid(_quantity(given.tension), _quantity(given.density))
+    found = fit_profile(points, liquid=liquid, gravity=_quantity(given.gravity), fit=given.fit)
+    check_folder(folder)
+    _say(repr(found))
+    text = json.dumps(finite(found.record()), indent=1, allow_nan=False) + "\n"
+    write_whole(folder / "fit.json", partial(_write_text, text))
+    for name, rows in (("points.csv", found.points), ("profile.csv", found.curve)):
+        table = csv_text([{"x": x, "z": z, "units": found.units} for x, z in rows.tolist()])
+        write_whole(folder / name, partial(_write_text, table))
+    plot_fit(found, folder / "overlay.png")
+    return SOLVED
+
+
+def _write_text(text: str, name: str) -> None:
+    Path(name).write_text(text, encoding="utf-8")
+
+
+def _quantity(text: str) -> Any:
+    """A plain number, or a text with a unit for the rule of the field."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _init(given: argparse.Namespace) -> int:
+    """Write a commented scene file to begin with."""
+    from .io.first_scene import KINDS, first_scene
+
+    path = Path(given.scene)
+    if path.exists():
+        raise OutputError(f"scene = {str(path)!r}: is there already; name another file")
+    text = first_scene(choice("--kind", given.kind, KINDS))
+    write_whole(path, partial(_write_text, text))
+    _say(f"{path}: edit it, then python -m iga_membrane solve {path} --out out")
+    return SOLVED
+
+
 def _schema(given: argparse.Namespace) -> int:
     from .io.schema import scene_schema
 
@@ -243,54 +293,14 @@ def _schema(given: argparse.Namespace) -> int:
     return SOLVED
 
 
-def _command(commands: Any, name: str, run: Callable[[Any], int], text: str) -> Any:
-    command = commands.add_parser(name, help=text)
-    command.set_defaults(run=run)
-    return command
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="iga_membrane", description="Static wetting with C1 spline membranes."
-    )
-    parser.add_argument("--version", action="version", version=__version__)
-    parser.add_argument("--progress", action="store_true",
-                        help="lines of progress on stderr where it is no terminal")  # fmt: skip
-    commands = parser.add_subparsers(dest="command", required=True)
-    command = _command(commands, "solve", _solve, "solve one scene file")
-    command.add_argument("scene", help="scene file, .toml or .json")
-    command.add_argument("--out", required=True, help="folder for result.json and state.npz")
-    command.add_argument("--vtu", action="store_true", help="also write the surface (surface.vtu)")
-    command.add_argument("--png", action="store_true", help="also write a picture (picture.png)")
-    command = _command(commands, "sweep", _sweep, "solve a grid of scenes; again: what is missing")
-    command.add_argument("sweep", help="scene file with [[over]] tables, .toml or .json")
-    command.add_argument("--out", required=True, help="folder for points/, table.csv, table.npz")
-    command.add_argument("--workers", type=int, help="processes (default: the processors)")
-    command.add_argument("--timeout", type=float, help="seconds per point")
-    command.add_argument("--allow-mixed", action="store_true",
-                         help="keep points of other options or versions")  # fmt: skip
-    command.add_argument("--retry-failed", action="store_true",
-                         help="compute again what is recorded, but not as a success")  # fmt: skip
-    command = _command(commands, "info", _info, "print the summary of a result")
-    command.add_argument("result", help="output folder, state.npz or result.json")
-    command = _command(commands, "plot", _plot, "draw a result")
-    command.add_argument("result", help="output folder or state.npz")
-    command.add_argument(
-        "--out",
-        help="picture (.png; section and goniometer also .pdf, .svg); by default picture.png",
-    )
-    command.add_argument("--kind", choices=("space", "goniometer", "section"), default="space",
-                         help="in space; the shadow from the side; the section")  # fmt: skip
-    command.add_argument("--color", choices=("none", "mean_curvature", "pressure", "gap",
-                                             "residual"))  # fmt: skip
-    command.add_argument("--view", choices=("oblique", "foot", "side", "top"))
-    command.add_argument("--focus", choices=("asperity",), help="zoom on a wet asperity")
-    command.add_argument("--traction", action="store_true", help="arrows along contact lines")
-    command.add_argument("--forces", action="store_true", help="arrows of forces on particles")
-    command = _command(commands, "export", _export, "write other files of a result")
-    command.add_argument("result", help="output folder or state.npz")
-    command.add_argument("files", nargs="+", metavar="FILE",
-                         help="by its ending .vtu, .stl, .obj, .ply, .geomdl.json, .lines.csv, "
-                         ".forces.csv, .json, .npz or .png")  # fmt: skip
-    _command(commands, "schema", _schema, "print the JSON schema of scene files")
-    return parser
+_RUN: dict[str, Callable[[argparse.Namespace], int]] = {
+    "init": _init,
+    "solve": _solve,
+    "sweep": _sweep,
+    "fit": _fit,
+    "info": _info,
+    "plot": _plot,
+    "export": _export,
+    "schema": _schema,
+}
+"""Command to what runs it."""

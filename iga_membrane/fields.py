@@ -56,6 +56,13 @@ def path_values(field: str, values: Any) -> tuple[float, ...]:
     return checked
 
 
+def as_acceleration(field: str, value: Any) -> tuple[float, float, float]:
+    """A vector, or its size along -z."""
+    if listed(value):
+        return vector(field, value)
+    return 0.0, 0.0, -number("gravity.acceleration", value, least=0.0)
+
+
 def table(field: str, value: Any, *, fields: Mapping[str, Rule]) -> Any:
     """A table of known fields that keep their rules."""
     if not isinstance(value, Mapping):

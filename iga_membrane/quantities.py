@@ -52,7 +52,8 @@ _NAMES = {
     "energy": "energy E_surf E_grav",
     "angle": "contact_angle angles contact_angle_measured apparent_angle cassie_baxter_angle "
              "alpha_deg phi_deg psi_deg end_slope_deg receding advancing placed_at angle_min "
-             "angle_max angle_front angle_rear tilt onset_tilt first_slip_tilt",
+             "angle_max angle_front angle_rear angle_left angle_right tilt onset_tilt "
+             "first_slip_tilt",
 }  # fmt: skip
 DIMENSIONS = {name: of for of, names in _NAMES.items() for name in names.split()}
 """Name of a field of the scene file, of a measure or of a column to what it is; names that are not

@@ -3,16 +3,22 @@
 import functools
 import json
 import os
+import re
+import shlex
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
 import pytest
+from drop_camera import photograph, sessile
 from helpers import droplet_file, within
 
 import iga_membrane as iga
 from iga_membrane.cli import main
+from iga_membrane.command_line import COMMANDS, parser
+from iga_membrane.io.first_scene import KINDS
+from iga_membrane.io.scene_readers import READERS
 from iga_membrane.view.export import known_endings
 
 SCENE = droplet_file(150.0, 1.0, degree=3, elements=8)
@@ -324,3 +330,87 @@ def test_the_current_folder_is_one_like_any_other(scene, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path / "here")
     assert main(["solve", str(scene), "--out", "."]) == 0
     assert (tmp_path / "here" / "result.json").exists()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_first_scene_is_read_and_has_units(kind, tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    assert main(["init", str(path), "--kind", kind]) == 0
+    assert "solve" in capsys.readouterr().out
+    scene = iga.load_scene(path).scene
+    assert scene.kind == kind
+    assert scene.unit_system == "SI"
+    assert main(["init", str(path)]) == 4  # it is there already
+    # what is commented out is right too
+    text = path.read_text()
+    for line in ("# elements = 20", '# model = "full"', "# max_cpu_s = 600"):
+        assert line in text
+        table = "discretization" if "max" not in line else "solver"
+        text = text.replace(f"# [{table}]", f"[{table}]").replace(line, line[2:])
+    path.write_text(text)
+    assert iga.load_scene(path).scene.sector.model == "full"
+
+
+def test_the_kinds_of_first_scenes_are_those_of_scene_files():
+    assert set(KINDS) <= set(READERS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_first_scene_is_solved(kind, tmp_path):
+    assert main(["init", str(tmp_path / "scene.toml"), "--kind", kind]) == 0
+    assert main(["solve", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out")]) == 0
+
+
+def test_a_photograph_is_measured(tmp_path, capsys):
+    from PIL import Image
+
+    r, z, _ = sessile(100.0, 2e-3)
+    image = photograph(r, z, seed=1).clip(0, 255).astype("uint8")
+    Image.fromarray(image).save(tmp_path / "drop.png")
+    out = tmp_path / "fit"
+    assert main(["fit", str(tmp_path / "drop.png"), "--scale", "8 um", "--out", str(out)]) == 0
+    found = json.loads((out / "fit.json").read_text())
+    assert found["values"]["contact_angle"] == pytest.approx(100.0, abs=0.2)
+    assert found["units"] == "SI"
+    assert found["unit_of"]["volume"] == "m^3"
+    assert "contact_angle 100" in capsys.readouterr().out
+    names = ["fit.json", "overlay.png", "points.csv", "profile.csv"]
+    assert sorted(p.name for p in out.iterdir()) == names
+    for wrong in (["--scale", "3 uL"], ["--density", "1 mm"], ["--fit", "angle"]):
+        line = ["fit", str(tmp_path / "drop.png"), "--scale", "8 um", "--out", str(out), *wrong]
+        assert main(line) == 2
+    assert main(["fit", str(tmp_path / "none.png"), "--scale", "8 um", "--out", str(out)]) == 2
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_shows_examples_that_it_understands(command, capsys):
+    """The lines of its help are parsed without an error."""
+    with pytest.raises(SystemExit) as ended:
+        main([command, "--help"])
+    assert ended.value.code == 0
+    shown = re.findall(rf"python -m iga_membrane ({command}.*)", capsys.readouterr().out)
+    assert shown
+    understood = parser(dict.fromkeys(COMMANDS, lambda given: 0))
+    for line in shown:
+        understood.parse_args(shlex.split(line.partition(" >")[0]))
+
+
+@pytest.mark.parametrize(
+    ("line", "meant"),
+    [
+        (["slove", "scene.toml", "--out", "o"], "solve"),
+        (["solve", "scene.toml", "--out", "o", "--vtx"], "--vtu"),
+        (["plot", "out", "--color", "presure"], "pressure"),
+        (["init", "scene.toml", "--kind", "sesile_droplet"], "sessile_droplet"),
+        (["fit", "drop.png", "--scal", "8 um", "--out", "o", "--gravty", "1"], "--gravity"),
+    ],
+)
+def test_a_slip_is_told_what_was_meant(line, meant, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(line)
+    except SystemExit as ended:
+        code = ended.code
+    assert code == 2
+    assert f'did you mean "{meant}"?' in capsys.readouterr().err

@@ -27,8 +27,10 @@ FLOORS = {
     "verification": 10,
     "solvers": 11,
     "driver": 12,
+    "photograph": 12.2,
     "reference": 12.5,  # pictures may show the witness, no solve may lean on it
     "view": 13, "analysis": 13,
+    "command_line": 0,
     "cli": 14, "__main__": 15,
 }  # fmt: skip
 DOORS = {("driver/solution.py", "view")}

@@ -59,7 +59,7 @@ def result(solution: Solution) -> dict[str, Any]:
         "history": [_step(step) for step in solution.load_steps],
         "iterations": [vars(step) for step in solution.iterations],
     }  # fmt: skip
-    cleaned: dict[str, Any] = _finite(record)
+    cleaned: dict[str, Any] = finite(record)
     return cleaned
 
 
@@ -110,12 +110,12 @@ def _forces(found: ParticleForces) -> dict[str, Any]:
     }
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """Plain Python values; numbers that JSON cannot hold become None."""
     if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
+        return {key: finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
+        return [finite(item) for item in value]
     if isinstance(value, (float, np.floating)):
         return float(value) if math.isfinite(value) else None
     return value

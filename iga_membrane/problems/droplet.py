@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import either, instance, listed, number, vector, words
+from ..checks import either, instance, vector, words
 from ..errors import SceneError
+from ..fields import as_acceleration
 from ..initial.closed_droplet import STARTS
 from ..initial.liquid import Discretization, Liquid, with_defaults
 from ..initial.particle_placement import check_particles
@@ -57,17 +58,10 @@ ROUNDING = 1e-12
 """Part of gravity along an axis of the scene below which it has none there."""
 
 
-def _acceleration(field: str, value: Any) -> tuple[float, float, float]:
-    """A vector, or its size along -z."""
-    if listed(value):
-        return vector(field, value)
-    return 0.0, 0.0, -number("gravity.acceleration", value, least=0.0)
-
-
 @family
 @checked(
     volume="liquid.volume",
-    gravity=_acceleration,
+    gravity=as_acceleration,
     hold="droplet.hold",
     start=either(words(*STARTS), instance(Surface)),
     penalty="solver.penalty",

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..terms import BodyDensity
+from .meridian import rates, stops
 
 LEVEL = 1e-9
 """Slope angle (radians) of a profile that has come to lie level, far below any that can be seen."""
@@ -40,30 +41,15 @@ def profile(height: float, body: BodyDensity, tension: float) -> Array:
     the apex down to z = 0, or to where it closes or comes to lie level."""
     from scipy.integrate import solve_ivp  # a third of a small solve's process: only where needed
 
-    def slope(s: float, state: tuple[float, float, float]) -> list[float]:
-        r, z, turn = state
-        pressure = -(body.constant + body.gradient[2] * z)
-        around = np.sin(turn) / r if r > 0 else 0.5 * pressure / tension
-        return [np.cos(turn), -np.sin(turn), pressure / tension - around]
-
-    def ground(s: float, state: tuple[float, float, float]) -> float:
-        return state[1]
-
-    def closed(s: float, state: tuple[float, float, float]) -> float:
-        return np.pi - state[2]
-
-    def level(s: float, state: tuple[float, float, float]) -> float:
-        return state[2] - 0.5 * LEVEL
-
-    events = ground, closed, level
-    for event in events:
-        event.terminal = True  # type: ignore[attr-defined]
-    start = 1e-6 * height
-    turn = -0.5 * start * (body.constant + body.gradient[2] * height) / tension
-    return solve_ivp(
-        slope, (start, 20.0 * height + 20.0), [start, height, turn],
-        method="DOP853", events=events, rtol=1e-9, atol=1e-12,
+    pressure = -(body.constant + body.gradient[2] * height) / tension
+    weight = body.gradient[2] / tension
+    first = 1e-6 * height
+    r, depth, turn = solve_ivp(
+        lambda s, y: rates(y[2], y[0], y[1], pressure, weight), (first, 20.0 * height + 20.0),
+        [first, 0.0, 0.5 * first * pressure], method="DOP853", rtol=1e-9, atol=1e-12,
+        events=stops(height, 0.5 * LEVEL),
     ).y  # fmt: skip
+    return np.stack([r, height - depth, turn])
 
 
 def cassie_baxter_angle(

@@ -25,6 +25,14 @@ def test_droplet_on_plane():
     assert np.all(np.diff([row["contact_radius"] for row in rows]) < 0)
 
 
+def test_goniometer(tmp_path):
+    found = load("goniometer").main(tmp_path, seed=3)
+    assert found["contact_angle"] == pytest.approx(105.0, abs=0.15)
+    assert found["volume"] == pytest.approx(4e-9, rel=3e-3)
+    assert found["solved_radius"] == pytest.approx(found["contact_radius"], rel=1e-3)
+    assert (tmp_path / "goniometer.png").exists()
+
+
 def test_film_limit():
     rows, (low, high) = load("film_limit").main(heights=(0.4, 0.65), too_far=0.68)
     assert max(row["area_error"] for row in rows) < 1e-8

@@ -123,6 +123,7 @@ GIVEN = {
     "drop_space": lambda: {"kind": "bspline", "degree": 3, "elements": 4},
     "elevated": lambda: {"surface": iga.sheet(1.0, elements=3)},
     "film_between_rings": lambda: {"half_height": 0.4, "discretization": iga.Discretization()},
+    "fit_profile": lambda: {"points": arc(), "liquid": iga.Liquid(), "gravity": 1.0},
     "from_geomdl": lambda: {"surface": geomdl_surface()},
     "lagrange_basis": lambda: {"breaks": [0.0, 0.5, 1.0], "degree": 2},
     "line_basis": lambda: {"kind": "bspline", "elements": 4, "degree": 3},
@@ -133,6 +134,7 @@ GIVEN = {
     "periodic_basis": lambda: {"elements": 6, "degree": 3},
     "plot": lambda: {"solution": drop(), "path": "drop.png"},
     "plot_curves": lambda: {"table": Columns(), "path": "curve.png", "x": "x", "y": "y"},
+    "plot_fit": lambda: {"fit": fitted(), "path": "fit.png"},
     "plot_phases": lambda: {"table": Columns(), "path": "p.png", "x": "x", "y": "y", "of": "of"},
     "plot_section": lambda: {"solution": drop(), "path": "drop.png"},
     "plot_side": lambda: {"solution": drop(), "path": "drop.png"},
@@ -147,6 +149,7 @@ GIVEN = {
     "sessile_droplet": lambda: {"substrate": PLANE, "volume": 1.0},
     "sheet": lambda: {"size": 1.0},
     "si": lambda: {"quantity": "1 uL"},
+    "silhouette": lambda: {"image": shadow()},
     "solve": lambda: {"scene": drop().scene},
     "sphere": dict,
     "sweep": lambda: {"scene_of": crowd, "over": {"contact_angle": [90.0, 100.0]}},
@@ -227,6 +230,23 @@ def verdict():
     return iga.Verdict("stays", 0.0, 0.0, 1.0, 0.0)
 
 
+def arc():
+    """Points of a half circle above z = 0."""
+    turn = np.linspace(0.05, np.pi - 0.05, 60)
+    return np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+
+@functools.cache
+def fitted():
+    return iga.fit_profile(arc())
+
+
+def shadow():
+    """A dark disc cut by a dark solid, before a bright background."""
+    rows, columns = np.mgrid[:120, :160]
+    return np.where((rows > 100) | (np.hypot(rows - 90, columns - 80) < 50), 0.0, 1.0)
+
+
 class Law(iga.GapTerm):
     """No energy at all."""
 
@@ -287,7 +307,7 @@ TAKES = {
         film_between_rings.half_height liquid_sheet.size liquid_sheet.gravity
         periodic_basis.length plot.zoom ring_basis.length ring_space.angle
         self_cleaning.friction sessile_droplet.volume sessile_droplet.gravity
-        sessile_droplet.penetration_tolerance sheet.size sphere.radius
+        sessile_droplet.penetration_tolerance sheet.size silhouette.scale sphere.radius
     """,
     "None": """
         Contact.ring Cylinder.point Discretization.degree Discretization.model Kinematics.second
@@ -301,7 +321,8 @@ TAKES = {
         TrimmedContactLine.toward
         asperity_cell.liquid asperity_cell.discretization contact_line.solid
         convergence_study.model convergence_study.options critical_value.options drop_space.kink
-        film_between_rings.liquid film_between_rings.discretization liquid_sheet.particle
+        film_between_rings.liquid fit_profile.liquid film_between_rings.discretization
+        liquid_sheet.particle
         liquid_sheet.liquid liquid_sheet.discretization liquid_sheet.start liquid_sheet.membrane
         plot.focus plot.limits plot_phases.curve pull_off.options ring_space.kink
         self_cleaning.options sessile_droplet.liquid sessile_droplet.discretization
@@ -327,7 +348,8 @@ TAKES = {
     "text": """
         Centroid.axis Path.parameter Solution.message Symmetry.axis
         Solution.stability_scope
-        animate.path plot_curves.path plot_curves.x plot_phases.path plot_phases.x plot_phases.y
+        animate.path plot_fit.path plot_curves.path
+        plot_curves.x plot_phases.path plot_phases.x plot_phases.y
         plot_phases.of plot_section.path plot_side.path sessile_droplet.hold trace.parameter
     """,
     "truth": """
@@ -446,11 +468,13 @@ def _no_work(monkeypatch, tmp_path):
         raise Began
 
     drop()
+    fitted()
+    monkeypatch.setattr("iga_membrane.photograph.fit.nearest_profile", begun)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("iga_membrane.assembly.lagrangian.Assembly.__init__", begun)
     monkeypatch.setattr("iga_membrane.analysis.sweep._running", begun)
     for place in ("picture.pyvista", "picture.trial", "section.figure", "goniometer.figure",
-                  "diagrams.figure", "animation.extent"):  # fmt: skip
+                  "diagrams.figure", "overlay.figure", "animation.extent"):  # fmt: skip
         monkeypatch.setattr(f"iga_membrane.view.{place}", begun)
 
 

@@ -1,0 +1,1 @@
+"""Photographs of droplets: their outlines, and the profiles of Young and Laplace through them."""
