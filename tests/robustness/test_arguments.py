@@ -304,7 +304,7 @@ TAKES = {
         WholeMembrane.penetration_tolerance animate.seconds asperity_cell.pressure
         asperity_cell.penetration_tolerance cap.radius cap.contact_angle cylinder.radius
         cylinder.height disc.radius drop_space.angle film_between_rings.radius
-        film_between_rings.half_height liquid_sheet.size liquid_sheet.gravity
+        film_between_rings.half_height fit_profile.gravity liquid_sheet.size liquid_sheet.gravity
         periodic_basis.length plot.zoom ring_basis.length ring_space.angle
         self_cleaning.friction sessile_droplet.volume sessile_droplet.gravity
         sessile_droplet.penetration_tolerance sheet.size silhouette.scale sphere.radius
