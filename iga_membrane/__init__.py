@@ -44,6 +44,7 @@ _HOME = {
     "solvers.options": ("SolverOptions",),
     "status": ("Status",),
     "driver.solution": ("Solution",),
+    "driver.linearize": ("linearize",),
     "driver.solve": ("solve",),
     "driver.state": ("load",),
     "driver.trace": ("Path", "trace"),

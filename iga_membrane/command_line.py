@@ -146,8 +146,8 @@ COMMANDS: dict[str, tuple[str, tuple[str, ...], tuple[Argument, ...]]] = {
         (
             _argument("result", help="output folder or state.npz"),
             _argument("files", nargs="+", metavar="FILE",
-                      help="by its ending .vtu, .stl, .obj, .ply, .geomdl.json, .lines.csv, "
-                      ".forces.csv, .json, .npz, .png or .html"),
+                      help="by its ending .vtu, .linear.vtu, .stl, .obj, .ply, .geomdl.json, "
+                      ".lines.csv, .forces.csv, .json, .npz, .png or .html"),
         ),
     ),
     "schema": ("print the JSON schema of scene files", ("> scene.schema.json",), ()),

@@ -7,7 +7,7 @@ from typing import Any
 
 from .errors import OutputError
 
-_BROUGHT_BY = {"PIL": "pillow", "vtkmodules": "pyvista"}
+_BROUGHT_BY = {"PIL": "pillow", "vtkmodules": "pyvista", "trame_pyvista": "trame-pyvista"}
 """Modules that are not named like what is to be installed."""
 
 

@@ -28,10 +28,11 @@ def save(solution: Solution, path: str | Path) -> None:
     ----------
     solution : converged or not.
     path : its ending says what is written: .json the result, .npz the state, .vtu the exact
-        rational Bezier surface with its fields, .stl, .obj or .ply the shape in triangles,
+        rational Bezier surface with its fields, .linear.vtu the same in flat cells (for meshio and
+        others), .stl, .obj or .ply the shape in triangles,
         .geomdl.json the spline surface for geomdl, .lines.csv the points of the contact lines,
-        .forces.csv the forces on particles, asperities and substrate, .png a picture; others by
-        :func:`writer`.
+        .forces.csv the forces on particles, asperities and substrate, .png a picture, .html one
+        that turns in a browser; others by :func:`writer`.
 
     Raises
     ------
@@ -116,6 +117,13 @@ def _vtu(solution: Solution) -> Writer:
     return lambda file: write_vtu(solution, file)
 
 
+@writer(".linear.vtu")
+def _linear_vtu(solution: Solution) -> Writer:
+    from .vtu import write_linear_vtu
+
+    return lambda file: write_linear_vtu(solution, file)
+
+
 @writer(".stl")
 @writer(".obj")
 @writer(".ply")
@@ -148,6 +156,7 @@ def _forces(solution: Solution) -> Writer:
     return _text(csv_text(force_rows(solution)))
 
 
+@writer(".html")
 @writer(".png")
 def _picture(solution: Solution) -> Writer:
     from .picture import plot

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,7 @@ RESOLUTION = partial(integer, least=2, most=4097)
 def membrane(
     solution: Solution,
     resolution: int,
-    name: str | None = None,
+    names: Sequence[str] = (),
     near: tuple[Array, float] | None = None,
 ) -> Any:
     """Smooth mesh with exact normals.
@@ -31,7 +32,7 @@ def membrane(
     Parameters
     ----------
     resolution : points along each direction of the patch.
-    name : of a field to keep at its points.
+    names : of the fields to keep at its points.
     near : a point and a distance: mesh the part of the patch that comes so near.
     """
     pv = pyvista()
@@ -59,7 +60,7 @@ def membrane(
     quads = np.stack(corners, axis=-1).reshape(-1, 4)
     mesh = pv.PolyData.from_regular_faces(k.position.reshape(-1, 3), quads)
     mesh.point_data.active_normals = k.normal.reshape(-1, 3)
-    if name is not None:
+    for name in names:
         mesh[name] = field(solution, name, k).ravel()
     return mesh
 

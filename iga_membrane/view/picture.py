@@ -25,6 +25,7 @@ from ..checks import (
 )
 from ..driver.solution import Solution
 from ..errors import SceneError
+from ..optional import optional
 from ..quantities import labelled
 from .drawing import check_drawing, pyvista, trial
 from .marks import add_forces, add_lines
@@ -87,7 +88,8 @@ def plot(
     Parameters
     ----------
     solution : converged or not.
-    path : PNG file to write; an interactive window if None.
+    path : file to write: .png a picture, .html a page that turns and zooms in any browser and needs
+        nothing else; if None nothing is written.
     color : "mean_curvature" (exact, from the spline), "pressure", "gap" to the nearest solid,
         "residual", the error ``|2 H + p / gamma|`` over ``1 / L`` on a logarithmic scale, or
         "none", plain liquid.
@@ -103,6 +105,11 @@ def plot(
         the membrane's middle if omitted.
     limits : lowest and highest value of the colours; most of the values if omitted.
 
+    Returns
+    -------
+    pyvista.Plotter or None
+        Without a path the plotter, to add to and to ``show()``, in a notebook too.
+
     Notes
     -----
     Asperities that carry a part of the droplet are drawn red, wet spots dark, contact lines red.
@@ -113,7 +120,7 @@ def plot(
     SceneError
         A word that is none of those; an asperity where none is wet.
     OutputError
-        If this machine cannot draw, with what to install.
+        If this machine cannot draw, with what to install; for .html without trame-pyvista.
     """
     axes = solution.scene.units.axes
     eye = _eye(view, axes)
@@ -122,7 +129,7 @@ def plot(
         trial()
     pv = pyvista()
     name = None if color == "none" else color
-    mesh = membrane(solution, resolution, name, near)
+    mesh = membrane(solution, resolution, () if name is None else (name,), near)
     through = trimming_solid(solution)
     if through is not None:
         mesh = outside(through, mesh)
@@ -142,10 +149,19 @@ def plot(
     _look(plotter, view, axes, eye, middle, span / zoom)
     plotter.enable_anti_aliasing("ssaa")
     if path is None:
-        return plotter.show()
-    plotter.screenshot(str(path))
+        return plotter
+    _write(plotter, str(path))
     plotter.close()
     return None
+
+
+def _write(plotter: Any, path: str) -> None:
+    """A picture, or by its ending a page."""
+    if path.endswith(".html"):
+        optional("trame_pyvista", "an .html page", "html")
+        plotter.trame.export_html(path)
+    else:
+        plotter.screenshot(path)
 
 
 def _look(plotter: Any, view: View, axes: Array, eye: Array, middle: Array, span: float) -> None:

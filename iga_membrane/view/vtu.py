@@ -13,6 +13,7 @@ from ..surface.bezier import bezier_net
 from ..surface.surface import Surface
 from .drawing import pyvista
 from .fields import FIELDS, field
+from .mesh import membrane, outside, trimming_solid
 
 if TYPE_CHECKING:
     from ..driver.solution import Solution
@@ -65,8 +66,6 @@ def write_vtu(solution: Solution, path: str) -> None:
     are right at ``degree + 1`` points in each direction of every cell. A gap is left out where
     there is no solid.
     """
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
-
     made = grid(solution.surface)
     xi, to_coefficients = _sampling(solution.surface)
     at = solution.surface.at(xi)
@@ -75,12 +74,39 @@ def write_vtu(solution: Solution, path: str) -> None:
         if np.isfinite(values).all():
             made.point_data[name] = to_coefficients(values)
     made.field_data["units"] = [solution.scene.unit_system]
+    _write(made, path)
+
+
+FLAT = 97
+"""Points along each direction of the patch of a file of flat cells: a droplet's area to 1e-4."""
+
+
+def write_linear_vtu(solution: Solution, path: str) -> None:
+    """Write the part of a solution's surface that bounds the liquid in flat triangles and
+    quadrilaterals, which every program reads, with its fields at their corners; the units are named
+    in a comment, since not every program reads text as data."""
+    mesh = membrane(solution, FLAT, FIELDS)
+    for name in FIELDS:
+        if not np.isfinite(mesh[name]).all():
+            del mesh.point_data[name]
+    through = trimming_solid(solution)
+    made = mesh if through is None else outside(through, mesh)
+    _write(made.cast_to_unstructured_grid(), path, f"units: {solution.scene.unit_system}")
+
+
+def _write(made: Any, path: str, remark: str = "") -> None:
+    """A grid as a file, which may begin with a remark."""
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(made)
     writer.SetDataModeToBinary()
     writer.SetWriteToOutputString(True)  # VTK's own way to the file crashes on a full disk
     writer.Write()
-    Path(path).write_text(writer.GetOutputString(), encoding="utf-8")
+    text = writer.GetOutputString()
+    if remark:
+        text = text.replace("<VTKFile", f"<!-- {remark} -->\n<VTKFile", 1)
+    Path(path).write_text(text, encoding="utf-8")
 
 
 def _sampling(surface: Surface) -> tuple[Array, Any]:

@@ -127,6 +127,7 @@ GIVEN = {
     "from_geomdl": lambda: {"surface": geomdl_surface()},
     "lagrange_basis": lambda: {"breaks": [0.0, 0.5, 1.0], "degree": 2},
     "line_basis": lambda: {"kind": "bspline", "elements": 4, "degree": 3},
+    "linearize": lambda: {"solution": drop()},
     "liquid_sheet": lambda: {"particle": BALL, "size": 5.0},
     "load": lambda: {"path": files() / "state.npz"},
     "load_scene": lambda: {"path": files() / "scene.toml"},

@@ -79,6 +79,24 @@ def test_fields_of_the_vtu_file_are_those_of_the_solution(space, tmp_path):
     assert fine["mean_curvature"] == pytest.approx(curvature, abs=1e-5 * abs(curvature).max())
 
 
+def test_flat_cells_are_read_by_meshio(solution, tmp_path):
+    """Area and fields of the droplet, by quadrilaterals that every program knows."""
+    meshio = pytest.importorskip("meshio")
+    solution.save(tmp_path / "drop.linear.vtu")
+    mesh = meshio.read(tmp_path / "drop.linear.vtu")
+    assert {cells.type for cells in mesh.cells} <= {"quad", "triangle"}
+    area = 0.0
+    for cells in mesh.cells:
+        x = mesh.points[cells.data]
+        across = np.cross(x[:, 2] - x[:, 0], x[:, -1] - x[:, 1])
+        area += 0.5 * np.linalg.norm(across, axis=1).sum()
+    assert area == pytest.approx(solution.measures["A_LG"], rel=1e-3)
+    pressure = solution.pressure(mesh.points)
+    assert mesh.point_data["pressure"].ravel() == pytest.approx(pressure, rel=1e-5)
+    assert "<!-- units: dimensionless -->" in (tmp_path / "drop.linear.vtu").read_text()[:200]
+    assert set(mesh.point_data) >= {"mean_curvature", "pressure", "gap", "residual"}
+
+
 @pytest.mark.parametrize("ending", ["stl", "obj", "ply"])
 def test_the_shape_of_a_drop_on_a_plane_is_closed_and_holds_its_volume(solution, tmp_path, ending):
     pv = pytest.importorskip("pyvista")

@@ -1,3 +1,5 @@
+import re
+import shutil
 import subprocess
 import sys
 
@@ -185,3 +187,48 @@ def test_a_film_of_a_path_has_a_frame_for_each_state(drawn, tmp_path):
     assert wide[0] / wide[1] == pytest.approx(widths[0] / widths[1], rel=0.05)
     with pytest.raises(iga.OutputError, match=r"must end in \.gif"):
         iga.animate(path, tmp_path / "path.mp4")
+
+
+def test_a_plotter_can_be_added_to(solution, tmp_path):
+    """Without a path nothing is shown or written; what is added is in the picture."""
+    pv = pytest.importorskip("pyvista")
+    plotter = solution.plot(size=(300, 200), resolution=33, color="none")
+    assert isinstance(plotter, pv.Plotter)
+    before = len(plotter.actors)
+    plotter.add_mesh(pv.Sphere(radius=0.2, center=(0.0, 0.0, 1.5)), color="red")
+    assert len(plotter.actors) == before + 1
+    plotter.off_screen = True
+    image = np.asarray(plotter.screenshot(return_img=True), float)
+    plotter.close()
+    red = (image[..., 0] > 120) & (image[..., 1] < 60) & (image[..., 2] < 60)
+    assert red.sum() > 30
+
+
+BROWSER = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
+)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not BROWSER, reason="no browser to look with")
+def test_a_page_turns_in_a_browser_and_needs_nothing_else(solution, tmp_path):
+    """A browser without a network shows the droplet, blue before white, where it should be."""
+    pytest.importorskip("trame_pyvista")
+    image_of = pytest.importorskip("PIL.Image")
+    page, shot = tmp_path / "drop.html", tmp_path / "shot.png"
+    solution.plot(page, color="none", size=(600, 450), resolution=65)
+    text = page.read_text()
+    assert not re.search(r'(src|href)="https?://', text)
+    flags = ["--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+             "--enable-unsafe-swiftshader", "--virtual-time-budget=15000", "--window-size=700,500",
+             "--proxy-server=127.0.0.1:9", f"--user-data-dir={tmp_path / 'profile'}"]  # fmt: skip
+    subprocess.run([BROWSER, *flags, f"--screenshot={shot}", page.as_uri()], check=True,
+                   capture_output=True, timeout=120)  # fmt: skip
+    seen = np.asarray(image_of.open(shot).convert("RGB"), float)
+    blue = (seen[..., 2] > seen[..., 0] + 20) & (seen[..., 2] > 90)
+    white = (seen > 240).all(axis=-1)
+    assert blue.mean() > 0.03
+    assert white.mean() > 0.3
+    rows, columns = np.nonzero(blue)
+    assert 0.3 < columns.mean() / seen.shape[1] < 0.7
+    assert 0.2 < rows.mean() / seen.shape[0] < 0.8
