@@ -14,6 +14,7 @@ __version__ = "0.1.0"
 _HOME = {
     "errors": ("GeometryError", "OutputError", "SceneError", "SolveError", "StateError"),
     "units": ("si",),
+    "progress": ("progress_bar",),
     "splines": ("Basis", "Grading", "Space", "Table", "bspline_basis", "close_pole",
                 "lagrange_basis", "line_basis", "open_knots", "periodic_basis", "ring_basis",
                 "tensor_space"),
@@ -73,7 +74,11 @@ __all__ = ["__version__", *sorted(_MODULE)]
 
 def __getattr__(name: str) -> Any:
     if name not in _MODULE:
-        raise AttributeError(f"module 'iga_membrane' has no attribute {name!r}")
+        from difflib import get_close_matches
+
+        close = get_close_matches(name, _MODULE, 1)
+        hint = f"; did you mean {close[0]!r}?" if close else ""
+        raise AttributeError(f"module 'iga_membrane' has no attribute {name!r}{hint}")
     value = part(_MODULE[name], name)
     globals()[name] = value
     return value

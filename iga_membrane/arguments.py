@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import checks
-from .checks import Rule
+from .checks import Rule, suggestion
 from .fields import FIELDS
 
 T = TypeVar("T", bound=Callable[..., Any])
@@ -59,13 +59,24 @@ def _function(call: Any, table: str, rules: Mapping[str, Rule | str]) -> Any:
 
     @wraps(call)
     def with_checks(*args: Any, **kwargs: Any) -> Any:
-        given = signature.bind(*args, **kwargs)
+        given = _bound(signature, call.__name__, args, kwargs)
         given.apply_defaults()
         for name, (field, rule) in known().items():
             given.arguments[name] = rule(field, given.arguments[name])
         return call(*given.args, **given.kwargs)
 
     return with_checks
+
+
+def _bound(
+    signature: inspect.Signature, name: str, args: tuple[Any, ...], named: dict[str, Any]
+) -> inspect.BoundArguments:
+    """The arguments of a call; a slip in a name is told what was meant."""
+    try:
+        return signature.bind(*args, **named)
+    except TypeError as error:
+        unknown = next((word for word in named if word not in signature.parameters), None)
+        raise TypeError(f"{name}() {error}{suggestion(unknown, signature.parameters)}") from None
 
 
 def _record(kind: Any, table: str, rules: Mapping[str, Rule | str]) -> Any:

@@ -32,7 +32,7 @@ from .output_folder import (
     remove,
     remove_results,
 )
-from .progress import bar, iterations
+from .progress import iterations, progress_bar
 from .progress import log as progress_log
 from .solvers.options import SolverOptions
 from .view.export import ending_of, save
@@ -74,7 +74,7 @@ def _solve(given: argparse.Namespace) -> int:
 
         check_drawing()
     options = replace(SolverOptions(), **file.solver, checkpoint=folder / STATE)
-    with bar("solving") as report:
+    with progress_bar("solving") as report:
         solution = solve(file.scene, options, on_fail="return", report=report)
     seconds = {"import": imported, **solution.cpu_seconds, "total": process_time()}
     solution = replace(solution, cpu_seconds=seconds)

@@ -85,3 +85,17 @@ def test_frames_of_an_older_longer_path_are_removed(solved, tmp_path, monkeypatc
 def test_what_is_there_is_loaded():
     assert optional("json", "a test") is import_module("json")
     assert drawing.pyvista().__name__ == "pyvista"
+
+
+@pytest.mark.parametrize(
+    ("ask", "meant"),
+    [
+        (lambda: iga.sesile_droplet, "sessile_droplet"),
+        (lambda: iga.sessile_droplet(iga.Plane(90), volum=1.0), "volume"),
+        (lambda: iga.fit_profile([[0.0, 1.0]], gravty=1.0), "gravity"),
+        (lambda: iga.solve(scen=1), "scene"),
+    ],
+)
+def test_a_slip_in_python_is_told_what_was_meant(ask, meant):
+    with pytest.raises((AttributeError, TypeError), match=f"did you mean .{meant}.?"):
+        ask()

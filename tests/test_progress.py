@@ -9,11 +9,14 @@ import sys
 import pytest
 from helpers import droplet_file
 
-from iga_membrane.progress import bar, iterations
+from iga_membrane.progress import iterations, progress_bar
 
 
 def test_progress_is_a_line_for_every_tenth_in_a_log(caplog):
-    with caplog.at_level(logging.INFO, "iga_membrane.progress"), bar("sweep", 40) as report:
+    with (
+        caplog.at_level(logging.INFO, "iga_membrane.progress"),
+        progress_bar("sweep", 40) as report,
+    ):
         for done in range(41):
             report(done)
     assert caplog.messages == [f"sweep: {tenth} %" for tenth in range(10, 101, 10)]
@@ -71,7 +74,7 @@ def test_the_bar_counts_the_digits_of_one_solve(monkeypatch):
 
     monkeypatch.setattr(rich.Progress, "update", noted)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with bar("solving"):
+    with progress_bar("solving"):
         for number, residual in enumerate((1e-1, 1e-3, 1e-2, 1e-6, 1e-13), start=1):
             iterations.debug("%s, %d, residual %.0e", "solve", number, residual)
     parts = [part for part, _ in drawn]
@@ -79,3 +82,50 @@ def test_the_bar_counts_the_digits_of_one_solve(monkeypatch):
     assert parts[-1] == pytest.approx(1.0)
     assert drawn[-1][1] == "solving: solve, 5, residual 1e-13"
     assert not iterations.handlers
+
+
+NOTEBOOK = """
+import sys
+import types
+
+seen = []
+
+class HTML:
+    def __init__(self, data):
+        self.data = data
+
+class Place:
+    def update(self, shown):
+        seen.append(shown.data)
+
+def display(shown, display_id):
+    seen.append(shown.data)
+    return Place()
+
+shell = types.ModuleType("IPython")
+shell.get_ipython = lambda: types.SimpleNamespace(kernel=object())
+page = types.ModuleType("IPython.display")
+page.HTML, page.display = HTML, display
+sys.modules |= {"IPython": shell, "IPython.display": page}
+
+import iga_membrane as iga
+mesh = iga.Discretization(elements=6, degree=3)
+drop = iga.sessile_droplet(iga.Plane(120), volume=1.0, gravity=1.0, discretization=mesh)
+with iga.progress_bar("<solving>") as report:
+    iga.solve(drop, report=report)
+assert all("<solving>" not in each and "&lt;solving&gt;" in each for each in seen)
+print(len(seen), *seen, sep="\\n")
+"""
+
+
+def test_a_notebook_gets_an_element_that_fills():
+    """By what the kernel of a notebook answers to; nothing of it is installed here."""
+    run = subprocess.run(
+        [sys.executable, "-c", NOTEBOOK], capture_output=True, text=True, check=True
+    )
+    shown = run.stdout.splitlines()[1:]
+    parts = [float(re.search(r"value='([\d.]+)'", line)[1]) for line in shown]
+    assert parts == sorted(parts)
+    assert (parts[0], parts[-1]) == (0.0, 1.0)
+    assert any("residual" in line for line in shown)
+    assert "done" in shown[-1]

@@ -26,7 +26,7 @@ from ..files import write_whole
 from ..output_folder import output_folder
 from ..overview import Overview, Told
 from ..problems.scene import Scene
-from ..progress import bar
+from ..progress import progress_bar
 from ..quantities import DIMENSIONLESS, told_value
 from ..solvers.options import SolverOptions
 from ..tables import column, csv_text, dataframe, dataset, names_of
@@ -207,7 +207,7 @@ def sweep(
     if left:
         if executor is None:
             _check_sendable(scene_of)
-        with bar("sweep", len(points)) as report:
+        with progress_bar("sweep", len(points)) as report:
             job = Job(
                 scene_of, left, found, void, store, options, report, _in_flight(executor, workers)
             )

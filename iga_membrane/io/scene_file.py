@@ -72,7 +72,7 @@ def read_tables(path: str | Path) -> Any:
     path = Path(path)
     data = read_file(path, LARGEST_FILE, SceneError)
     try:
-        text = data.decode("utf-8")
+        text = data.decode("utf-8-sig")  # Windows marks the order of bytes
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read as text ({error})") from error
     try:

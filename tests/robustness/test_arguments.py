@@ -139,6 +139,7 @@ GIVEN = {
     "plot_phases": lambda: {"table": Columns(), "path": "p.png", "x": "x", "y": "y", "of": "of"},
     "plot_section": lambda: {"solution": drop(), "path": "drop.png"},
     "plot_side": lambda: {"solution": drop(), "path": "drop.png"},
+    "progress_bar": lambda: {"text": "solving"},
     "pull_off": lambda: {"scene": pulled()},
     "read_scene": lambda: {"data": {"scene": "sessile_droplet", "liquid": {"volume": 1.0},
                                     "substrate": {"contact_angle": 90.0}}},
@@ -306,7 +307,7 @@ TAKES = {
         asperity_cell.penetration_tolerance cap.radius cap.contact_angle cylinder.radius
         cylinder.height disc.radius drop_space.angle film_between_rings.radius
         film_between_rings.half_height fit_profile.gravity liquid_sheet.size liquid_sheet.gravity
-        periodic_basis.length plot.zoom ring_basis.length ring_space.angle
+        periodic_basis.length progress_bar.total plot.zoom ring_basis.length ring_space.angle
         self_cleaning.friction sessile_droplet.volume sessile_droplet.gravity
         sessile_droplet.penetration_tolerance sheet.size silhouette.scale sphere.radius
     """,
@@ -349,7 +350,7 @@ TAKES = {
     "text": """
         Centroid.axis Path.parameter Solution.message Symmetry.axis
         Solution.stability_scope
-        animate.path plot_fit.path plot_curves.path
+        animate.path plot_fit.path plot_curves.path progress_bar.text
         plot_curves.x plot_phases.path plot_phases.x plot_phases.y
         plot_phases.of plot_section.path plot_side.path sessile_droplet.hold trace.parameter
     """,

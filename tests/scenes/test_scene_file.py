@@ -7,7 +7,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from helpers import UNIT_VOLUME, within
+from helpers import EXAMPLES, UNIT_VOLUME, within
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -343,3 +343,18 @@ def test_bad_paths_are_named(path, said):
 def test_a_second_path_is_not_available_yet():
     path = {"parameter": "substrate.contact_angle", "values": [90, 120]}
     assert "2 [[path]] tables: not available yet" in refusal(changed("path", [path, path]))
+
+
+@pytest.mark.parametrize("ending", [".toml", ".json"])
+def test_files_with_the_line_ends_of_windows_are_the_same(ending, tmp_path):
+    """A file written there, with its mark of the order of bytes too."""
+    text = (EXAMPLES / "droplet.toml").read_text()
+    if ending == ".json":
+        text = json.dumps(tomllib.loads(text), indent=1)
+    scenes = []
+    for name, data in (("here", text.encode()), ("there", text.replace("\n", "\r\n").encode()),
+                       ("marked", text.replace("\n", "\r\n").encode("utf-8-sig"))):  # fmt: skip
+        path = tmp_path / f"{name}{ending}"
+        path.write_bytes(data)
+        scenes.append(iga.load_scene(path).scene.description)
+    assert scenes[0] == scenes[1] == scenes[2]
