@@ -24,7 +24,7 @@ extensions = [
 ]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "notebooks"]
 templates_path = ["_templates"]
 html_theme = "furo"
 html_title = f"iga_membrane {release}"
@@ -35,6 +35,7 @@ numpydoc_show_class_members = False
 numpydoc_attributes_as_param_list = True
 
 pages.write_gallery(HERE / "gallery")
+pages.write_tutorials(HERE / "tutorials")
 pages.write_reference(HERE / "api", iga_membrane._HOME)
 
 SECTION = re.compile(r"^(Parameters|Attributes)$")

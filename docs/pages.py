@@ -1,8 +1,10 @@
-"""Pages that are made from the sources when the documentation is built: gallery and reference."""
+"""Pages that are made from the sources when the documentation is built: gallery, tutorials and
+reference."""
 
 from __future__ import annotations
 
 import ast
+import json
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -19,7 +21,7 @@ TITLES = {
     "Pictures and files": ("view",),
     "Surfaces and their motion": ("surface", "dofs"),
     "Spline spaces": ("splines",),
-    "Units": ("units",),
+    "Units and progress": ("units", "progress"),
     "Errors": ("errors",),
 }
 
@@ -55,6 +57,25 @@ def write_gallery(folder: Path) -> None:
         _write(folder / f"{example.stem}.md", "\n".join(page))
         entries.append(f"## [{title}]({example.stem}.md)\n\n{shown}")
         names.append(example.stem)
+    tree = "\n".join(["```{toctree}", ":hidden:", "", *names, "```"])
+    _write(folder / "index.md", "\n".join([*entries, tree, ""]))
+
+
+def write_tutorials(folder: Path) -> None:
+    """A page for every notebook, its words and its code; tests run the notebooks."""
+    folder.mkdir(exist_ok=True)
+    entries, names = ["# Tutorials\n"], []
+    for book in sorted((DOCS / "notebooks").glob("*.ipynb")):
+        cells = json.loads(book.read_text())["cells"]
+        page = []
+        for cell in cells:
+            text = "".join(cell["source"])
+            page.append(text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```")
+        source = f"The notebook: `docs/notebooks/{book.name}`."
+        _write(folder / f"{book.stem}.md", "\n\n".join([*page, source, ""]))
+        title, _, more = "".join(cells[0]["source"]).partition("\n\n")
+        entries.append(f"## [{title.removeprefix('# ')}]({book.stem}.md)\n\n{more}\n")
+        names.append(book.stem)
     tree = "\n".join(["```{toctree}", ":hidden:", "", *names, "```"])
     _write(folder / "index.md", "\n".join([*entries, tree, ""]))
 

@@ -1,6 +1,7 @@
 """The code in README and docs runs as it stands, page by page, each in a folder of its own; links
 lead somewhere; the pages are built without a warning."""
 
+import json
 import re
 import subprocess
 import sys
@@ -8,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
+import iga_membrane
 from iga_membrane.view import drawing
 
 ROOT = Path(__file__).parents[1]
-MADE = ("_build", "api", "gallery")
+MADE = ("_build", "api", "gallery", "tutorials")
 PAGES = [
     ROOT / "README.md",
     ROOT / "CONTRIBUTING.md",
@@ -31,7 +33,7 @@ def blocks(page):
     return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
 
 
-LONG = ("docs/start.md", "docs/guides/particles.md")
+LONG = ("docs/start.md", "docs/guides/particles.md", "docs/guides/every_name.md")
 """Pages whose code takes more than some seconds."""
 
 
@@ -50,6 +52,14 @@ def test_code_blocks_run(page, tmp_path, monkeypatch):
     names = {"__name__": "__main__"}
     for number, block in enumerate(blocks(page)):
         exec(compile(block, f"{page.name}[{number}]", "exec"), names)
+
+
+def test_every_public_name_stands_in_code_that_is_run():
+    """In an example or in a block of the docs: the tests of both run them."""
+    code = [path.read_text() for path in (ROOT / "examples").glob("*.py")]
+    code += [block for page in PAGES for block in blocks(page)]
+    said = set(re.findall(r"\biga\.(\w+)", "\n".join(code)))
+    assert set(iga_membrane.__all__) <= said
 
 
 def anchors(page):
@@ -88,6 +98,17 @@ def test_every_example_is_a_page_of_the_gallery(pages, tmp_path):
         assert f"examples/{example.name}" in page
         assert f"({example.stem}.md)" in index
         assert pages.picture_of(example) is not None, example.name
+
+
+def test_every_notebook_is_a_page_with_its_words_and_code(pages, tmp_path):
+    pages.write_tutorials(tmp_path / "tutorials")
+    index = (tmp_path / "tutorials" / "index.md").read_text()
+    for book in (ROOT / "docs" / "notebooks").glob("*.ipynb"):
+        page = (tmp_path / "tutorials" / f"{book.stem}.md").read_text()
+        assert f"({book.stem}.md)" in index
+        assert "import iga_membrane as iga" in page
+        for cell in json.loads(book.read_text())["cells"]:
+            assert re.sub(r"\n{3,}", "\n\n", "".join(cell["source"])) in page
 
 
 def test_every_public_name_is_in_the_reference(pages, tmp_path):

@@ -15,7 +15,7 @@ from ..fields import path_values
 from ..overview import Overview, Told
 from ..own import begin, called
 from ..problems.scene import Ramp, Scene
-from ..quantities import DIMENSIONLESS, told_value
+from ..quantities import told_value
 from ..solvers.load_path import Bracket, LoadStep
 from ..solvers.load_stepping import load_stepping
 from ..solvers.newton import NewtonResult
@@ -62,10 +62,10 @@ class Path(Told):
             ends = told_value(self.parameter, self.values[-1], system)
             rows.insert(0, (self.parameter, f"{self.values[0]:.6g} to {ends}"))
             rows += [
-                (name, f"{told_value(name, first[name], DIMENSIONLESS)} to "
-                       f"{told_value(name, value, system)}")
-                for name, value in last.items() if name in first
-            ]  # fmt: skip
+                (name, f"{_plain(first[name])} to {told_value(name, value, system)}")
+                for name, value in last.items()
+                if name in first
+            ]
         return Overview(f"path, {system}: {reached}", rows)
 
     def portrait(self) -> bytes | None:
@@ -114,6 +114,10 @@ class Path(Told):
     def _rows(self) -> list[dict[str, Any]]:
         pairs = zip(self.values, self.solutions, strict=True)
         return [{self.parameter: value, **solution.row()} for value, solution in pairs]
+
+
+def _plain(value: float | None) -> str:
+    return "n/a" if value is None else f"{value:.6g}"
 
 
 @checked(values=path_values)

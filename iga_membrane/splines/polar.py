@@ -41,10 +41,12 @@ def close_pole(space: Space) -> Space:
     Raises
     ------
     SceneError
-        If the first direction is no ring.
+        If the first direction is no ring, or the pole is closed already.
     """
     if not space.bases[0].periodic:
         raise SceneError("a pole closes a ring: the first basis must be periodic")
+    if space.pole is not None:
+        raise SceneError("space: its pole is closed already; give the ring space")
     smooth = min(space.continuity, 1)
     joined, corners = (2, 3) if smooth else (1, 1)
     n1, n2 = space.net_shape
