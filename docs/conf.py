@@ -27,6 +27,8 @@ myst_heading_anchors = 3
 exclude_patterns = ["_build", "notebooks"]
 templates_path = ["_templates"]
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["pages.css"]
 html_title = f"iga_membrane {release}"
 
 autosummary_generate = True

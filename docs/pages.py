@@ -47,7 +47,7 @@ def said(example: Path) -> tuple[str, str]:
 def write_gallery(folder: Path) -> None:
     """A page for every example, and their list."""
     folder.mkdir(exist_ok=True)
-    entries, names = ["# Gallery\n"], []
+    entries, names = ["# Gallery\n", '<div class="thumbnails">\n'], []
     for example in examples():
         title, more = said(example)
         picture = picture_of(example)
@@ -55,10 +55,16 @@ def write_gallery(folder: Path) -> None:
         code = f"```{{literalinclude}} ../../examples/{example.name}\n:language: python\n```\n"
         page = [f"# {title}\n", shown, more + "\n", f"## {example.name}\n", code]
         _write(folder / f"{example.stem}.md", "\n".join(page))
-        entries.append(f"## [{title}]({example.stem}.md)\n\n{shown}")
+        entries.append(_thumbnail(example.stem, title, picture))
         names.append(example.stem)
     tree = "\n".join(["```{toctree}", ":hidden:", "", *names, "```"])
-    _write(folder / "index.md", "\n".join([*entries, tree, ""]))
+    _write(folder / "index.md", "\n".join([*entries, "</div>\n", tree, ""]))
+
+
+def _thumbnail(stem: str, title: str, picture: Path | None) -> str:
+    """A picture with its title that leads to the page; the style is in _static/pages.css."""
+    shown = f"![{title}](../{picture.relative_to(DOCS).as_posix()})" if picture else ""
+    return f"[{shown} {title}]({stem}.md)\n"
 
 
 def write_tutorials(folder: Path) -> None:

@@ -271,3 +271,21 @@ def test_numbers_without_units_say_so():
     assert "dimensionless" in film.summary()
     assert "dimensionless" in repr(film)
     assert " m" not in repr(film).splitlines()[1]
+
+
+def test_a_liquid_of_the_table_makes_a_scene_si():
+    """Its numbers are in SI, so the scene's are; a changed number is, too, in any unit."""
+    mesh = iga.Discretization(elements=6)
+    scene = iga.sessile_droplet(
+        iga.Plane(contact_angle=90), volume=3e-9, liquid=iga.Liquid.water(), discretization=mesh
+    )
+    assert scene.unit_system == "SI"
+    larger = scene.at("liquid.volume", "4 uL")
+    assert larger.unit_system == "SI"
+    assert larger.description["liquid"]["volume"] == 4e-9
+    tense = iga.sessile_droplet(
+        iga.Plane(90), volume=3e-9, liquid=iga.Liquid("50 mN/m", 998.0), discretization=mesh
+    )
+    assert tense.at("liquid.surface_tension", 0.07).unit_system == "SI"
+    with pytest.raises(iga.SceneError, match="quantity of volume"):
+        scene.at("liquid.volume", "4 mm")

@@ -11,9 +11,14 @@ from ..checks import either, function
 from ..dofs.boundary_conditions import Model
 from ..errors import SceneError
 from ..fields import FIELDS
+from ..quantities import Quantity
 from ..splines import BasisOf
 
 MODELS: tuple[Model, ...] = ("full", "half", "quarter", "eighth")
+
+
+def _in_si(tension: float, density: float) -> tuple[Quantity, Quantity]:
+    return Quantity(tension, "surface tension"), Quantity(density, "density")
 
 
 @dataclass(frozen=True)
@@ -33,22 +38,22 @@ class Liquid:
     @classmethod
     def water(cls) -> Liquid:
         """At 20 degrees Celsius in SI: 72.8 mN/m, 998 kg/m^3."""
-        return cls(72.8e-3, 998.0)
+        return cls(*_in_si(72.8e-3, 998.0))
 
     @classmethod
     def glycerol(cls) -> Liquid:
         """At 20 degrees Celsius in SI: 63 mN/m, 1261 kg/m^3."""
-        return cls(63e-3, 1261.0)
+        return cls(*_in_si(63e-3, 1261.0))
 
     @classmethod
     def ethanol(cls) -> Liquid:
         """At 20 degrees Celsius in SI: 22.3 mN/m, 789 kg/m^3."""
-        return cls(22.3e-3, 789.0)
+        return cls(*_in_si(22.3e-3, 789.0))
 
     @classmethod
     def mercury(cls) -> Liquid:
         """At 20 degrees Celsius in SI: 485 mN/m, 13546 kg/m^3."""
-        return cls(485e-3, 13546.0)
+        return cls(*_in_si(485e-3, 13546.0))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from ..checks import choice, listed, refusal
 from ..errors import SceneError
 from ..fields import keys_of
 from ..lazy import part
-from ..quantities import SI, has_units
+from ..quantities import SI, Quantity, dimension_of, has_units
 
 HOMES = {
     "sessile_droplet": "problems.droplet",
@@ -182,7 +182,10 @@ def _scaled(gravity: Any, size: float) -> Any:
 
 def _component(before: Any, index: int | None, value: float, path: str) -> Any:
     """A value, or a list with one of its components changed, in the units of the one before."""
-    value = int(value) if float(value).is_integer() else value
+    if has_units(before):
+        value = Quantity(value, dimension_of(path))
+    elif float(value).is_integer():
+        value = int(value)
     if index is None:
         return value
     given = list(before) if listed(before) else []

@@ -241,15 +241,14 @@ class Scene(Told):
         check_mirrors(self)
         object.__setattr__(self, "origin", origin_of(self))
 
-    @checked(value=number)
-    def at(self, path: str, value: float) -> Scene:
+    def at(self, path: str, value: float | str) -> Scene:
         """The scene with one number changed.
 
         Parameters
         ----------
         path : of the number in the words of the scene file, "substrate.contact_angle",
             "liquid.volume", "gravity.acceleration", "particle[0].center[2]".
-        value : of the number, in the user's units.
+        value : of the number, in the user's units, or with its own, "4 uL".
 
         Returns
         -------
@@ -267,7 +266,7 @@ class Scene(Told):
                 f"path = {path!r}: this scene was built from its parts, or parts of it were "
                 "replaced; build it anew with the number changed"
             )
-        scene: Scene = self.recipe.at(path, value).scene()
+        scene: Scene = self.recipe.at(path, number(str(path), value)).scene()
         return scene
 
     def bound(self, parameter: str) -> float | None:
