@@ -314,3 +314,11 @@ def test_convergence_study():
     splines, lagrange = (study.of(name, 2)[-1] for name in ("bspline", "lagrange"))
     assert splines.unknowns < 0.3 * lagrange.unknowns
     assert abs(splines.errors["energy"]) < 5e-8
+
+
+@pytest.mark.slow
+def test_jobs_of_a_first_day():
+    """All commands end with code 0, in empty folders."""
+    spent = load("../benchmarks/first_day").main(here=True)
+    assert len(spent) == 5
+    assert max(cpu for cpu, _ in spent.values()) < 60.0
