@@ -83,13 +83,15 @@ FEWEST = 12
 
 def _edges(values: Array, base: BaseLine) -> Iterator[tuple[float, float]]:
     """Columns and rows where rows of the image meet the body's edge, left and right."""
+    dark = float(np.median(values[base.body]))
+    faint = dark + FAINT * (1.0 - dark)
     for row in map(int, np.flatnonzero(base.body.any(axis=1))):
         columns = np.flatnonzero(base.body[row])
         left, right = float(columns[0]) - 0.5, float(columns[-1]) + 0.5
         room = 0.5 * (right - left)
         inside = values[row, int(left + 0.35 * (right - left)) : int(right - 0.35 * (right - left))]
         # the blur of a flat top covers rows from above and below
-        if room < CLEAR + 2 or not base.is_clear(row, (left, right)) or inside.mean() > FAINT:
+        if room < CLEAR + 2 or not base.is_clear(row, (left, right)) or inside.mean() > faint:
             continue
         for start, way in ((left, 1), (right, -1)):
             found = edge_near(values[row], start, way, room)
@@ -97,7 +99,7 @@ def _edges(values: Array, base: BaseLine) -> Iterator[tuple[float, float]]:
                 yield found, float(row)
 
 
-FAINT = 0.05
+FAINT = 0.02
 """Light in the middle of a row, over that of the background, up to which it is all shadow."""
 
 

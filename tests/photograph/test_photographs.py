@@ -319,3 +319,28 @@ def test_noise_is_what_the_image_has():
     off = found.residuals[found.used] / PIXEL
     assert 0.5 * NOISE < np.std(off) < 1.1 * NOISE
     assert WATER > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ground", [25.0, 100.0, 170.0, 215.0])
+@pytest.mark.parametrize("angle", [30.0, 75.0, 110.0, 150.0])
+def test_blur_in_all_directions_and_solids_of_any_shade(angle, ground):
+    """Light that falls on parts of pixels, lenses that blur every way: drawn eight times finer,
+    each row's edges off, then blurred by a pixel and rounded to whole grey values."""
+    fine, base, middle = 8, 320.3, 209.4
+    r, z, volume = sessile(angle, WIDTH)
+    dice = np.random.default_rng(int(angle + ground))
+    rows, columns = (np.arange(n * fine) / fine + 0.5 / fine - 0.5 for n in (400, 420))
+    height, order = (base - rows) * PIXEL, np.argsort(z)
+    half = np.interp(height, z[order], r[order], left=-1.0, right=-1.0) / PIXEL
+    left, right = (np.repeat(NOISE * dice.standard_normal(400), fine) for _ in range(2))
+    inside = (columns > (middle - half + left)[:, None]) & (
+        columns < (middle + half + right)[:, None]
+    )
+    image = np.where(inside & (height > 0)[:, None], 25.0, 215.0)
+    image[height <= 0] = ground
+    image = image.reshape(400, fine, 420, fine).mean(axis=(1, 3))
+    points = iga.silhouette(gaussian_filter(image, 1.0).round(), scale="8 um")
+    found = iga.fit_profile(points, liquid=LIQUID, gravity=9.81)
+    assert found.values["contact_angle"] == pytest.approx(angle, abs=0.3)
+    assert found.values["volume"] == pytest.approx(volume, rel=0.006)
