@@ -124,6 +124,7 @@ def rule_of(hint: Any) -> Rule | None:
     """The rule of an annotation; None where it allows anything."""
     if hint is Any:
         return None
+    hint = hint if hint in PLAIN else _meant(hint)
     if hint in PLAIN:
         return PLAIN[hint]
     kind, inside = get_origin(hint) or hint, get_args(hint)
@@ -134,6 +135,14 @@ def rule_of(hint: Any) -> Rule | None:
     if kind in BY_KIND:
         return BY_KIND[kind](inside)
     return checks.instance(kind) if isinstance(kind, type) else None
+
+
+def _meant(hint: Any) -> Any:
+    """What an alias of an annotation stands for: those of numpy are objects from 2.5 on."""
+    alias = get_origin(hint) or hint
+    value = getattr(alias, "__value__", hint)
+    inside = get_args(hint)
+    return value[inside] if inside and value is not hint else value
 
 
 def _or_none(rule: Rule) -> Rule:
@@ -191,11 +200,15 @@ BY_KIND: Mapping[Any, Callable[[tuple[Any, ...]], Rule]] = {
 """Rules of annotations by their kind, from what stands in their brackets."""
 
 
+ARRAY_LIKE = set(get_args(_meant(ArrayLike)))
+"""What numpy takes as an array."""
+
+
 def _any_of(kinds: tuple[Any, ...]) -> Rule | None:
     """One of several annotations; a wrong value is told the first one's rule."""
     if str in kinds and {Path, os.PathLike} & {get_origin(kind) or kind for kind in kinds}:
         kinds = (Path, *(kind for kind in kinds if kind is NoneType))
-    if set(get_args(ArrayLike)) <= set(kinds):
+    if ARRAY_LIKE <= set(kinds):
         return _or_none(checks.array)
     rules = [rule_of(kind) for kind in kinds if kind is not NoneType]
     if None in rules:

@@ -518,3 +518,19 @@ def test_wrong_arguments_are_refused_by_name(name):
         if kind.kind not in (kind.VAR_KEYWORD, kind.VAR_POSITIONAL):
             taken = {what for what, value in WRONG.items() if accepted(name, parameter, value)}
             assert taken == RIGHT.get(f"{name}.{parameter}", set()), parameter
+
+
+def test_an_alias_of_an_annotation_is_what_it_stands_for():
+    """numpy's annotations are aliases from 2.5 on, which Python 3.12 and later install."""
+    from numpy.typing import NDArray
+
+    from iga_membrane.arguments import rule_of
+
+    aliases = pytest.importorskip("typing_extensions")
+    kind = aliases.TypeVar("kind", bound=np.generic)
+    arrays = aliases.TypeAliasType("arrays", NDArray[kind], type_params=(kind,))
+    length = aliases.TypeAliasType("length", float)
+    assert rule_of(length)("x", 2) == 2.0
+    with pytest.raises(iga.SceneError):
+        rule_of(arrays[np.integer])("x", np.zeros(3))
+    assert rule_of(arrays[np.integer])("x", np.zeros(3, int)).shape == (3,)
