@@ -185,7 +185,7 @@ def test_a_solution_starts_another_solve_of_its_space(tmp_path):
 
 
 PATH = path_file("substrate.contact_angle", [90.0, 105.0, 120.0, 135.0, 150.0])
-SCENE = droplet_file(90.0, 1.0, PATH, elements=20, degree=4, model="half")
+SCENE = droplet_file(90.0, 1.0, PATH, elements=12, degree=4, model="half")
 
 
 @pytest.mark.parametrize(

@@ -50,9 +50,8 @@ def test_forces_on_every_asperity_balance_the_weight(spacing):
     assert middle["force"] == pytest.approx(solution.measures["p_base"] * spacing**2, rel=3e-2)
 
 
-@pytest.mark.parametrize(
-    ("spacing", "elements"), [(0.11, 150), pytest.param(0.06, 270, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("spacing", "elements"), [(0.11, 150), (0.06, 270)])
 def test_point_supports_lower_the_droplet_as_resolved_spots_do(spacing, elements):
     coarse, fine = solved(spacing), solved(spacing, elements)
     assert (coarse.contact["law"], fine.contact["law"]) == ("point supports", "penalty")
@@ -95,6 +94,7 @@ def test_contact_angles_on_many_small_asperities(angle):
     assert solution.measures["A_wet"] > solved(0.05).measures["A_wet"]
 
 
+@pytest.mark.slow
 def test_each_asperity_may_have_its_own_contact_angle():
     place = 0.08 * np.stack(np.meshgrid(*[np.arange(-14, 15)] * 2), axis=-1).reshape(-1, 2)
     centers = np.column_stack([place, np.full(len(place), -0.02)])

@@ -156,9 +156,8 @@ def test_particle_on_top_carries_what_a_line_can():
     assert 0.95 < -force / (0.2 * np.pi) < 1.0
 
 
-@pytest.mark.parametrize(
-    ("radius", "height"), [(0.2, 2.0), pytest.param(0.16, 1.96, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("radius", "height"), [(0.2, 2.0), (0.16, 1.96)])
 def test_particle_above_what_a_line_can_carry_is_lost(radius, height):
     lost = iga.solve(on_top(height, hold="xy", radius=radius, elements=12), on_fail="return")
     assert (lost.status, lost.kind) == (iga.Status.TOPOLOGY_CHANGE, "detached")

@@ -70,17 +70,18 @@ HEAVY = {"pressure": 0.1, "gravity": 0.3, "liquid_weight": True}
 
 
 @pytest.mark.parametrize(
-    ("boundary", "load"),
+    ("boundary", "load", "axes"),
     [
-        pytest.param("circle", UNLOADED, marks=pytest.mark.slow),
-        pytest.param("circle", PRESSED, marks=pytest.mark.slow),
-        pytest.param("circle", HEAVY, marks=pytest.mark.slow),
-        pytest.param("square", UNLOADED, marks=pytest.mark.slow),
-        pytest.param("square", PRESSED, marks=pytest.mark.slow),
-        ("square", HEAVY),
+        pytest.param("circle", UNLOADED, "xyz", marks=pytest.mark.slow),
+        pytest.param("circle", PRESSED, "xyz", marks=pytest.mark.slow),
+        pytest.param("circle", HEAVY, "xyz", marks=pytest.mark.slow),
+        pytest.param("square", UNLOADED, "xyz", marks=pytest.mark.slow),
+        pytest.param("square", PRESSED, "xyz", marks=pytest.mark.slow),
+        pytest.param("square", HEAVY, "xyz", marks=pytest.mark.slow),
+        ("square", HEAVY, "y"),
     ],
 )
-def test_force_off_the_middle_is_minus_the_slope_of_the_energy(boundary, load):
+def test_force_off_the_middle_is_minus_the_slope_of_the_energy(boundary, load, axes):
     options = {"boundary": boundary, "elements": 6 if boundary == "circle" else 4, **load}
 
     def at(place):
@@ -91,10 +92,11 @@ def test_force_off_the_middle_is_minus_the_slope_of_the_energy(boundary, load):
     found = forces.contact_line + forces.hydrostatic + forces.buoyancy
     energies = [
         [at(place + sign * axis).measures["energy"] for sign in (1, -1)]
-        for axis in step * np.eye(3)
+        for axis in step * np.eye(3)[["xyz".index(axis) for axis in axes]]
     ]
     slope = np.diff(energies, axis=1).ravel() / (2.0 * step)
-    assert np.abs(found - slope).max() <= 3e-6 * np.linalg.norm(found)
+    along = found[["xyz".index(axis) for axis in axes]]
+    assert np.abs(along - slope).max() <= 3e-6 * np.linalg.norm(found)
     # on its wide side the sheet is less steep and pulls harder sideways: it centres the particle
     assert found[0] < 0
     assert found[1] < 0
