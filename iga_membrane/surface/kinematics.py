@@ -62,7 +62,9 @@ class Kinematics:
     @cached_property
     def inverse_metric(self) -> Array:
         """(..., 2, 2) contravariant metric, eq. (3)."""
-        return np.linalg.inv(self.metric)
+        a = self.metric
+        adjoint = np.stack([a[..., 1, 1], -a[..., 0, 1], -a[..., 1, 0], a[..., 0, 0]], axis=-1)
+        return np.asarray((adjoint / self.area_element[..., None] ** 2).reshape(a.shape))
 
     @cached_property
     def dual_tangents(self) -> Array:
