@@ -37,6 +37,7 @@ _HOME = {
     "problems.scene": ("Scene",),
     "problems.droplet": ("sessile_droplet",),
     "problems.cell": ("asperity_cell",),
+    "problems.capillary_bridge": ("capillary_bridge",),
     "problems.film": ("film_between_rings",),
     "problems.sheet": ("liquid_sheet",),
     "problems.osman_sauer": ("WholeMembrane",),

@@ -26,6 +26,9 @@ Model = Literal["full", "half", "quarter", "eighth"]
 class Frame(Protocol):
     """Units and axes of a scene, as supports need them (:class:`..terms.Scale`)."""
 
+    @property
+    def length(self) -> float: ...
+
     def local_sphere(self, sphere: Sphere) -> Sphere: ...
 
 
@@ -77,7 +80,8 @@ class Sliding:
     Attributes
     ----------
     edge : as for :class:`Fixed`.
-    solid : what it slides on; None is the plane z = 0.
+    solid : what it slides on; None is a plane of constant z.
+    level : height of that plane in the frame of the scene.
     reach : distance, over the scene's length, over which the directions of the edge fade; they fade
         towards the other end of the patch as well.
     """
@@ -85,11 +89,14 @@ class Sliding:
     edge: str = "xi2=0"
     solid: Sphere | None = None
     reach: float = float("inf")
+    level: float = 0.0
     kind = "sliding"
 
     def scaled(self, scale: Frame) -> Sliding:
         """In the units of a scale."""
-        return self if self.solid is None else replace(self, solid=scale.local_sphere(self.solid))
+        if self.solid is None:
+            return replace(self, level=self.level / scale.length) if self.level else self
+        return replace(self, solid=scale.local_sphere(self.solid))
 
     def restrict(self, motion: Restrictable) -> None:
         """Restrict a motion."""
@@ -98,7 +105,7 @@ class Sliding:
     @property
     def on(self) -> Solid:
         """The solid, be it the plane."""
-        return self.solid or Plane(90.0)
+        return self.solid or Plane(90.0, (0.0, 0.0, self.level))
 
 
 @dataclass(frozen=True)
@@ -277,4 +284,9 @@ class Supports(tuple[Support, ...]):
     @property
     def on_plane(self) -> list[str]:
         """Edges that slide on the plane z = 0."""
-        return [s.edge for s in self.sliding if s.solid is None]
+        return [s.edge for s in self.flat if not s.level]
+
+    @property
+    def flat(self) -> list[Sliding]:
+        """Those that slide on planes."""
+        return [s for s in self.sliding if s.solid is None]

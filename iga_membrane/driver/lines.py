@@ -60,7 +60,7 @@ def contact_lines(solution: Solution) -> tuple[LineOnSolid, ...]:
     if scene.by_form.passed:
         found += _inside(scene, surface)
     for term in scene.local_terms().wetting:
-        line = contact_line(surface, term.edge, solid=term.ball)
+        line = contact_line(surface, term.edge, solid=term.face)
         number = -1
         if term.ball is not None:
             alone = own_asperity(scene)

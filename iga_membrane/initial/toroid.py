@@ -52,10 +52,10 @@ class End:
 
     @classmethod
     def of(cls, solid: Plane | Sphere, side: float) -> End:
-        """Of a solid in the scene's scale; a plane is z = 0."""
+        """Of a solid in the scene's scale."""
         angle = max(solid.contact_angle, FLATTEST)
         if isinstance(solid, Plane):
-            return cls(np.inf, 0.0, side, angle)
+            return cls(np.inf, solid.point[2], side, angle)
         return cls(solid.radius, solid.center[2] + side * solid.radius, side, angle)
 
     def circle(self, way: Array) -> tuple[Array, Array]:

@@ -33,8 +33,8 @@ crowd round it: from there on the force differs by 1e-6 between 20 and 40 elemen
 CENTERED = 1e-9
 """Distance of a particle from a plane's axis, over its radius, that is none."""
 
-Ends = tuple[Plane | Sphere, Sphere]
-"""The solids that a bridge joins."""
+Ends = tuple[Plane | Sphere, Plane | Sphere]
+"""The solids that a bridge joins, from the frame's origin upwards."""
 
 
 def ends_of(
@@ -61,6 +61,7 @@ def frame_of(ends: Ends) -> tuple[tuple[float, float, float], Array]:
     first, second = ends
     if isinstance(first, Plane):
         return first.point, first.axes()
+    assert isinstance(second, Sphere)
     way = np.subtract(second.center, first.center)
     x, y, z = (float(c) for c in way / np.linalg.norm(way))
     axes = Plane(90.0, normal=(x, y, z)).axes()
@@ -70,15 +71,18 @@ def frame_of(ends: Ends) -> tuple[tuple[float, float, float], Array]:
 
 def gap_between(ends: Ends) -> float:
     """Shortest distance between two solids."""
-    origin, axes = frame_of(ends)
-    return float(np.subtract(ends[1].center, origin) @ axes[:, 2]) - ends[1].radius
+    (origin, axes), second = frame_of(ends), ends[1]
+    if isinstance(second, Plane):
+        return float(np.subtract(second.point, origin) @ axes[:, 2])
+    return float(np.subtract(second.center, origin) @ axes[:, 2]) - second.radius
 
 
 def at_gap(ends: Ends, gap: float) -> Sphere:
-    """The second solid, at another distance from the first."""
-    origin, axes = frame_of(ends)
-    x, y, z = np.array(origin) + (gap + ends[1].radius) * axes[:, 2]
-    return replace(ends[1], center=(float(x), float(y), float(z)))
+    """The second solid, a sphere, at another distance from the first."""
+    (origin, axes), second = frame_of(ends), ends[1]
+    assert isinstance(second, Sphere)
+    x, y, z = np.array(origin) + (gap + second.radius) * axes[:, 2]
+    return replace(second, center=(float(x), float(y), float(z)))
 
 
 @dataclass(frozen=True)
@@ -113,7 +117,9 @@ def easy_gap(parts: Question, ends: Ends) -> float | None:
         return None
     rest = rest_of(first, parts.liquid, scale, parts.down)
     top = scale.length * (rest.lift + float(rest.pancake(np.ones(1))[1][0]))
-    floating = top - second.radius * (1.0 + float(np.cos(np.radians(second.contact_angle))))
+    deep = 1.0 + float(np.cos(np.radians(second.contact_angle)))
+    # a plane floats nowhere
+    floating = -np.inf if isinstance(second, Plane) else top - second.radius * deep
     return max(near for near in (CLOSE * scale.length, floating) if near < gap)
 
 
@@ -127,22 +133,28 @@ def bridge(parts: Question, ends: Ends) -> Foot:
     """
     _check_bridge(parts, ends)
     mesh, scale, gamma = parts.asked.mesh(), parts.scale, parts.liquid.surface_tension
-    low, high = End.of(_local(scale, ends[0]), 1.0), End.of(_local(scale, ends[1]), -1.0)
+    level = gap_between(ends) / scale.length
+    low, high = (
+        End.of(_local(scale, solid, height), side)
+        for solid, height, side in zip(ends, (0.0, level), (1.0, -1.0), strict=True)
+    )
     arc = least_energy_toroid(low, high, BALL)
     start = axisymmetric(ring_space(mesh.space, mesh.degree, mesh.elements), arc)
-    lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2])]
-    lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2]))
+    lines = [_line(gamma, ends[0], "xi2=0", scale.axes[:, 2], 0.0)]
+    lines.append(_line(gamma, ends[1], "xi2=1", -scale.axes[:, 2], gap_between(ends)))
     surface, edges = start.moved(scale.to_world(start.points)), ("xi2=0", "xi2=1")
     wet = tuple(
-        (edge, Plane(0.0) if isinstance(solid, Plane) else scale.local_sphere(solid), side)
-        for edge, solid, side in zip(edges, ends, (1.0, -1.0), strict=True)
+        (edge, _local(scale, solid, height), side)
+        for edge, solid, height, side in zip(edges, ends, (0.0, level), (1.0, -1.0), strict=True)
         if solid.contact_angle == 0.0
     )
     supports: list[Support] = [
         Fixed(edge)
         if solid.contact_angle == 0.0
-        else Sliding(edge, None if isinstance(solid, Plane) else solid)
-        for edge, solid in zip(edges, ends, strict=True)
+        else Sliding(edge, level=height)
+        if isinstance(solid, Plane)
+        else Sliding(edge, solid)
+        for edge, solid, height in zip(edges, ends, (0.0, gap_between(ends)), strict=True)
     ]
     sector = sector_of(mesh, parts.bond)
     rims = WetRims(wet) if wet else None
@@ -159,7 +171,7 @@ def _check_bridge(parts: Question, ends: Ends) -> None:
             '"conforming"; leave it out'
         )
     gap = gap_between(ends)
-    if isinstance(ends[0], Plane) and gap < -1e-9 * ends[1].radius:
+    if isinstance(ends[0], Plane) and isinstance(ends[1], Sphere) and gap < -1e-9 * ends[1].radius:
         raise SceneError(
             f"particle[0].center = {list(ends[1].center)}: {ends[1].radius + gap:g} above the "
             f"plane, less than its radius {ends[1].radius:g}: it reaches {-gap:.3g} into the "
@@ -172,13 +184,16 @@ def _check_bridge(parts: Question, ends: Ends) -> None:
         )
 
 
-def _local(scale: Scale, solid: Plane | Sphere) -> Plane | Sphere:
-    return solid if isinstance(solid, Plane) else scale.local_sphere(solid)
-
-
-def _line(gamma: float, solid: Plane | Sphere, edge: str, toward: Array) -> LineTerm:
-    """The contact line on a solid, whose liquid lies in a direction."""
+def _local(scale: Scale, solid: Plane | Sphere, level: float) -> Plane | Sphere:
+    """A solid in the scale; a plane lies at a level."""
     if isinstance(solid, Plane):
-        return PlaneContactLine(gamma, solid.contact_angle, edge)
+        return Plane(solid.contact_angle, (0.0, 0.0, level))
+    return scale.local_sphere(solid)
+
+
+def _line(gamma: float, solid: Plane | Sphere, edge: str, toward: Array, level: float) -> LineTerm:
+    """The contact line on a solid, whose liquid lies in a direction; a plane lies at a level."""
+    if isinstance(solid, Plane):
+        return PlaneContactLine(gamma, solid.contact_angle, edge, level=level)
     x, y, z = (float(a) for a in toward)
     return SphereContactLine(gamma, solid, edge, toward=(x, y, z))

@@ -21,6 +21,7 @@ HOMES = {
     "liquid_sheet": "problems.sheet",
     "asperity_cell": "problems.cell",
     "film_between_rings": "problems.film",
+    "capillary_bridge": "problems.capillary_bridge",
 }
 """Families of the package, and where they are loaded from when they are first used."""
 _FAMILIES: dict[str, Callable[..., Any]] = {}
@@ -102,6 +103,8 @@ class Recipe:
         found = re.fullmatch(r"([a-z_]+)(?:\[(\d+)\])?\.([a-z_]+)(?:\[(\d+)\])?", str(path))
         if found is None:
             raise self._unknown(path)
+        if path in WHOLE and WHOLE[path] in self.arguments:
+            return self.changed(**{WHOLE[path]: value})
         table, which, name, axis = found.groups()
         index = None if axis is None else int(axis)
         if path == "gravity.acceleration":
@@ -150,6 +153,8 @@ OWN = {
     "asperity_cell": "cell",
     "film_between_rings": "rings",
 }
+WHOLE = {"gap.distance": "gap"}
+"""Paths of the scene file that are an argument of their own."""
 """The table of the scene file that a family has to itself."""
 
 TABLES = {"substrate": "sphere", "particle": "particle"}

@@ -345,7 +345,7 @@ class Scene(Told):
         return self.by_kind.sector
 
     def local_surface(self) -> Surface:
-        """The start in the scene's scale and frame; sliding edges exactly in z = 0.
+        """The start in the scene's scale and frame; edges that slide on planes exactly in them.
 
         Raises
         ------
@@ -353,15 +353,15 @@ class Scene(Told):
             If a sliding edge lies off the plane.
         """
         points = self.units.to_local(self.surface.points)
-        for name in self.by_kind.on_plane:
-            edge = self.surface.space.edge_functions(name)
-            off = float(np.abs(points[edge, 2]).max())
+        for support in self.local_supports().flat:
+            edge = self.surface.space.edge_functions(support.edge)
+            off = float(np.abs(points[edge, 2] - support.level).max())
             if off > 1e-6:
                 raise SceneError(
-                    f"surface: its sliding edge {name} lies {off:g} lengths off the plane; start "
-                    "with the edge in the plane"
+                    f"surface: its sliding edge {support.edge} lies {off:g} lengths off the "
+                    "plane; start with the edge in the plane"
                 )
-            points[edge, 2] = 0.0
+            points[edge, 2] = support.level
         return self.surface.moved(points)
 
     def along_spines(self, surface: Surface) -> Scene:

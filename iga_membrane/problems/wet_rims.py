@@ -39,8 +39,9 @@ class WetRims(FreeEdge):
         ring, along = circle(space.bases[0]), space.bases[1].abscissae[:, None]
         for (edge, solid, side), where in zip(self.ends, place, strict=True):
             k, fading = (0, 1.0 - along) if edge == "xi2=0" else (-1, along)
-            r, z = where, 0.0
-            if isinstance(solid, Sphere):
+            if isinstance(solid, Plane):
+                r, z = where, solid.point[2]
+            else:
                 r = solid.radius * np.sin(where)
                 z = solid.center[2] + side * solid.radius * np.cos(where)
             shift = r * ring + [0.0, 0.0, z] - local.net[:, k]
@@ -55,6 +56,6 @@ def _place(surface: Surface, edge: str, solid: Plane | Sphere, side: float) -> f
     s = np.concatenate([ring.breaks[:-1], middle])
     x = surface.at(np.column_stack([s, np.full(len(s), t)]), 1).position
     r = np.hypot(x[:, 0], x[:, 1])
-    if not isinstance(solid, Sphere):
+    if isinstance(solid, Plane):
         return float(r.mean())
     return float(np.arctan2(r, side * (x[:, 2] - solid.center[2])).mean())

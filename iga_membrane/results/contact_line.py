@@ -13,7 +13,7 @@ from ..checks import integer
 from ..contact.unfitted import Unfitted
 from ..overview import brief_repr
 from ..quadrature import gauss
-from ..solids import Sphere
+from ..solids import Plane, Sphere
 from ..splines.space import EDGES, line
 from ..surface.surface import Surface
 from ..terms import BodyDensity
@@ -45,7 +45,7 @@ def contact_line(
     surface: Surface,
     edge: str = "xi2=0",
     points: int | None = None,
-    solid: Sphere | None = None,
+    solid: Plane | Sphere | None = None,
 ) -> ContactLine:
     """Line geometry from exact spline tangents (paper eqs 33-34).
 
@@ -70,7 +70,7 @@ def contact_line(
     left = 1.0 if (along == 0) == (end == 0) else -1.0
     tangent = left * k.tangents[:, along] / speed[:, None]
     conormal = np.cross(tangent, k.normal)
-    up = np.array([[0.0, 0.0, 1.0]]) if solid is None else solid.normal(k.position)
+    up = np.array([[0.0, 0.0, 1.0]]) if solid is None else solid.nearest(k.position).normal
     # atan2 keeps its digits where the membrane is nearly tangent to the solid
     tilt = np.linalg.norm(np.cross(k.normal, up), axis=1)
     angle = np.arctan2(tilt, np.einsum("ki,ki->k", k.normal, np.broadcast_to(up, k.normal.shape)))

@@ -26,6 +26,11 @@ def widest(surface: Surface, middle: Array) -> Array:
     return _farthest(surface, np.zeros(3), np.append(middle, 0.0), np.diag([1.0, 1.0, 0.0]))
 
 
+def narrowest(surface: Surface, middle: Array) -> Array:
+    """(3,) point nearest to the vertical axis through a point (2,)."""
+    return _farthest(surface, np.zeros(3), np.append(middle, 0.0), -np.diag([1.0, 1.0, 0.0]))
+
+
 def _farthest(surface: Surface, slope: Array, middle: Array, bend: Array) -> Array:
     """Where ``slope . x + 1/2 (x - middle) . bend (x - middle)`` is largest: Newton's method from
     several starts, its steps uphill as every eigenvalue of the Hessian counts by its size."""

@@ -133,7 +133,7 @@ def pull_on_sphere(
     fading = 1.0 - np.abs(surface.space.abscissae[..., 1] - at)
     along = points_of(surface.space, fading[..., None])
     for i in range(3):
-        total[i] -= _work(assembly, surface, multipliers, along * np.eye(3)[i])
+        total[i] -= work_of(assembly, surface, multipliers, along * np.eye(3)[i])
     line = contact_line(surface, term.edge, assembly.points[0], term.sphere)
     cap = WettedCap(line, term.sphere, term.toward)
     pressure = cap.push(body)
@@ -143,7 +143,7 @@ def pull_on_sphere(
     return Pull(assembly.whole(total) + [ex * lifted, ey * lifted, pressure[2]], pressure)
 
 
-def _work(assembly: Assembly, surface: Surface, multipliers: Array, displacement: Array) -> float:
+def work_of(assembly: Assembly, surface: Surface, multipliers: Array, displacement: Array) -> float:
     """Derivative of the Lagrangian along any displacement (count, 3) of the control points."""
     points, body = surface.points, assembly.density(multipliers)
     table, edges = assembly.table, assembly.edges

@@ -19,6 +19,7 @@ from ..terms import (
 )
 from ..terms import variations as vary
 from .apparent import apparent_angle, cassie_baxter_angle
+from .bridge_measures import bridge_measures
 from .contact_line import ContactLine, contact_line
 from .contact_patches import substrate_patches
 from .farthest import highest, widest
@@ -54,6 +55,8 @@ def measures(
     if scene.kind == "asperity_cell":
         values["V_liq"] = values.pop("volume")
         values |= _cell(scene, assembly, surface, body, values)
+    elif scene.kind == "capillary_bridge":
+        values |= bridge_measures(scene, assembly, surface, multipliers)
     elif scene.kind == "sessile_droplet" and (carries or not assembly.edges.wetted):
         values |= _on_solids(scene, assembly, surface, body, values)
     elif scene.kind == "sessile_droplet":

@@ -63,6 +63,10 @@ class SphereContactLine(WettingLine):
     def ball(self) -> Sphere:
         return self.sphere
 
+    @property
+    def face(self) -> Sphere:
+        return self.sphere
+
     def normal(self, points: Array) -> Array:
         return self.sphere.normal(points)
 

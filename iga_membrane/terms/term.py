@@ -291,6 +291,8 @@ class Constraint(BodyTerm):
 
 LINE_EDGES = ("xi2=0",)
 """Edges that can carry a contact line: wetted areas are counted counterclockwise inside them."""
+CEILING_EDGES = ("xi2=1",)
+"""Edges that can carry one on a plane above the liquid."""
 
 
 class LineTerm(Term):
@@ -331,17 +333,24 @@ class WettingLine(LineTerm):
     gamma : surface tension.
     covered : whether the membrane covers the wetted area, too.
     toward : unit vector out of the solid to the liquid.
+    level : of a plane, its height.
     """
 
     gamma: float
     covered: bool = False
+    level: float = 0.0
     toward = (0.0, 0.0, 1.0)
     forms: ClassVar[tuple[str, ...]] = ("lines", "wetting")
 
     @property
     def ball(self) -> Sphere | None:
-        """The sphere on which it lies; None on the plane z = 0."""
+        """The sphere on which it lies; None on a plane."""
         return None
+
+    @property
+    @abstractmethod
+    def face(self) -> Plane | Sphere:
+        """The solid on which it lies."""
 
     def normal(self, points: Array) -> Array:
         """(..., 3) unit normals of its solid at points (..., 3) of it."""

@@ -24,7 +24,7 @@ from ..problems.scene import Scene
 from ..results.contact_line import ContactLine, contact_line, vertical_forces
 from ..results.measures import sphere_of
 from ..results.wetted_cap import WettedCap
-from ..solids import Sphere
+from ..solids import Plane, Sphere
 from ..splines import EdgeTable
 from ..surface.ring import rational_matrix
 from ..surface.surface import Surface
@@ -167,14 +167,24 @@ def _ending(
     foot, on_spheres, standing = None, False, 90.0
     for term in lines:
         sphere = term.ball
-        line = contact_line(surface, term.edge, 2 * points[0], sphere)
+        line = contact_line(surface, term.edge, 2 * points[0], term.face)
         young = young_cosine(scene, surface, term, line)
         angle = float(np.arccos(np.clip(young, -1.0, 1.0)))
         cosine = max(cosine, cosine_error(line, young), key=abs)
-        gap, nearest = _nearest(surface, points, sector, sphere)
+        gap, nearest = _nearest(surface, points, sector, term.face)
         found.setdefault("deepest", nearest)
         if sphere is None:
-            found["penetration"], foot, standing = max(0.0, -gap), line, float(np.degrees(angle))
+            found["penetration"] = max(found.get("penetration", 0.0), -gap)
+            level = term.level
+            if not level:
+                foot, standing = line, float(np.degrees(angle))
+                continue
+            above = BodyDensity(float(body.at(np.array([0.0, 0.0, level]))), body.gradient)
+            on_it = vertical_forces(line, above, tension, float(np.degrees(angle)))
+            # the edge runs clockwise, so what is wet counts negative
+            inside -= level * on_it.wet_area
+            pull[2] -= on_it.push + on_it.line
+            carried += abs(on_it.push) + abs(on_it.line)
             continue
         on_spheres = True
         cap = WettedCap(line, sphere, term.toward)
@@ -350,7 +360,7 @@ def scatter(total: Array, absolute: Array, motion: Motion, functions: Index, for
 
 
 def _nearest(
-    surface: Surface, points: tuple[int, int], sector: Sector, solid: Sphere | None
+    surface: Surface, points: tuple[int, int], sector: Sector, solid: Plane | Sphere
 ) -> tuple[float, Place]:
     """Smallest gap to the solid on a sampling four times denser than the quadrature, and where."""
     one, two = surface.space.bases
@@ -359,5 +369,5 @@ def _nearest(
     t = np.linspace(two.breaks[0], two.breaks[-1], 4 * points[1] * two.elements + 1)
     lines = np.tensordot(one.matrix(s), surface.net, axes=1)
     x = (rational_matrix(surface.space, t) @ lines).reshape(-1, 3)
-    gap = x[:, 2] if solid is None else solid.gap(x)
+    gap = solid.gap(x)
     return float(gap.min()), _place(x[gap.argmin()])
