@@ -23,9 +23,14 @@ FLATTEST = 6.0
 angles, which halve with every step of Newton's method, and not from smaller ones."""
 WIDEST = np.radians(175.0)
 """Polar angle of a circle on a sphere at most."""
-GRID, ZOOMS = 64, 1
-"""Circles tried on each solid, and how often again around the best pair, at last within 1e-3 of the
-widest from each other."""
+GRID, ZOOMS = 49, 2
+"""Turns and slants tried, an odd number, so that between equal solids the chord is upright, and how
+often again around the best pair, at last within 0.01 degrees: bridges 1e-3 as high as they are wide
+then take two iterations."""
+NONE = 1e-6
+"""Way to a circle over the widest at which there is none."""
+STEEPEST = 1.5
+"""Slant of a chord at most, radians."""
 SEEN = 12
 """Points of an arc between its ends at which it must lie outside of both solids."""
 MOST = 0.97 * np.pi
@@ -78,11 +83,6 @@ class End:
         above = self.side * (z - self.level)
         curved = 0.0 if np.isinf(self.radius) else (r**2 + above**2) / (2.0 * self.radius)
         return above + curved > 0.0
-
-    def ways(self, widest: float) -> Array:
-        """(GRID,) of circles up to the widest."""
-        most = min(WIDEST * self.radius, widest)
-        return np.linspace(most / GRID, most, GRID)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,33 +138,33 @@ def least_energy_toroid(low: End, high: End, volume: float) -> Toroid:
 
     Notes
     -----
-    It is a valley of the energy over the two circles, as a narrow circle belongs to a droplet that
-    has left a solid; where there is none, the toroid nearest to balance.
+    It is a valley of the energy over the turn of the arc and the slant of its chord; where there is
+    none, the toroid nearest to balance. The volume then tells where the circles are, those of a
+    flat bridge to a small part of its height.
     """
-    widest = _widest(low, high, WIDER * volume)
-    one, two = low.ways(widest), high.ways(widest)
-    energy, turn = _energies(low, high, one, two, volume)
-    objective = _valleys(energy)
-    steady = bool(np.isfinite(objective).any())
-    if not steady:
-        objective = _mismatch(energy, one, two)
-    best = np.unravel_index(objective.argmin(), energy.shape)
-    for _ in range(ZOOMS):
-        one, two = _around(one, int(best[0])), _around(two, int(best[1]))
-        energy, turn = _energies(low, high, one, two, volume)
-        objective = energy if steady else _mismatch(energy, one, two)
-        best = np.unravel_index(objective.argmin(), energy.shape)
-    a, b = one[best[0]], two[best[1]]
+    turns: Array = np.linspace(-MOST, MOST, GRID)
+    slants: Array = np.linspace(-STEEPEST, STEEPEST, GRID)
+    steady = True
+    for zoom in range(1 + ZOOMS):
+        energy, one, two = _energies(low, high, turns, slants, volume)
+        objective = _valleys(energy)
+        steady = bool(np.isfinite(objective).any()) if not zoom else steady
+        if not steady:
+            objective = _mismatch(energy, one, two)
+        elif zoom:
+            objective = np.where(np.isfinite(energy), energy, np.inf)
+        i, k = np.unravel_index(objective.argmin(), energy.shape)
+        a, b, turn = one[i, k], two[i, k], float(turns[i])
+        turns, slants = _around(turns, int(i)), _around(slants, int(k))
     return Toroid(
         (float(low.circle(a)[0]), float(low.height(a))),
         (float(high.circle(b)[0]), float(high.height(b))),
-        float(turn[best]),
+        turn,
     )
 
 
 def _valleys(energy: Array) -> Array:
-    """Energies where they are lower than at all eight neighbours on a grid, else infinite: on the
-    grid's rim the liquid has left a solid."""
+    """Energies where they are lower than at all eight neighbours on a grid, else infinite."""
     middle = energy[1:-1, 1:-1]
     one, two = (range(n - 2) for n in energy.shape)
     around = [
@@ -178,16 +178,17 @@ def _valleys(energy: Array) -> Array:
 
 
 def _mismatch(energy: Array, one: Array, two: Array) -> Array:
-    """How far energies are from balance at both circles: squares of their slopes per wetted area,
-    differences of cosines; infinite where a neighbour is none."""
-    with np.errstate(invalid="ignore"):
-        slopes = np.gradient(energy, one, two)
-    off = (slopes[0] / one[:, None]) ** 2 + (slopes[1] / two) ** 2
+    """How far energies are from balance at both circles, whose ways are given: squares of their
+    slopes per wetted area, differences of cosines; infinite where a neighbour is none."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        (e0, e1), (a0, a1), (b0, b1) = (np.gradient(each) for each in (energy, one, two))
+        both = a0 * b1 - a1 * b0
+        off = ((e0 * b1 - e1 * b0) / (both * one)) ** 2 + ((e1 * a0 - e0 * a1) / (both * two)) ** 2
     return np.where(np.isfinite(off), off, np.inf)
 
 
-def _around(ways: Array, k: int) -> Array:
-    return np.linspace(ways[max(k - 1, 0)], ways[min(k + 1, len(ways) - 1)], GRID)
+def _around(values: Array, k: int) -> Array:
+    return np.linspace(values[max(k - 1, 0)], values[min(k + 1, len(values) - 1)], GRID)
 
 
 def _widest(low: End, high: End, volume: float) -> float:
@@ -209,38 +210,56 @@ def _widest(low: End, high: End, volume: float) -> float:
     return far
 
 
-def _energies(low: End, high: End, one: Array, two: Array, volume: float) -> tuple[Array, Array]:
-    """Energies (a, b) of circles at the ways (a,) and (b,), infinite where there is no such toroid,
-    and half turns."""
-    one, two = one[:, None], two[None, :]
+def _energies(
+    low: End, high: End, turns: Array, slants: Array, volume: float
+) -> tuple[Array, Array, Array]:
+    """Energies (a, b) of toroids of turns (a,) and slants (b,) of the chord, infinite where there
+    is none of the volume, minus infinity without a circle; and the ways to their circles."""
+    turn, slope = np.broadcast_arrays(turns[:, None], np.tan(slants))
+    bulge, tilt = _segment(turn)
+    apart = high.level - low.level
+    curved = 0.5 * (1.0 / low.radius + 1.0 / high.radius)
+    most = _widest(low, high, WIDER * volume)
+
+    def circles(way: Array) -> tuple[Array, Array]:
+        """Ways whose mean is given; of the height between the circles the slant makes their
+        difference."""
+        off = 0.5 * slope * (apart + curved * way**2)
+        ends = [(way - off, low.radius), (way + off, high.radius)]
+        one, two = (np.clip(w, NONE * most, min(WIDEST * r, most)) for w, r in ends)
+        return one, two
+
+    def volume_of(one: Array, two: Array) -> Array:
+        (r0, _), (r1, _) = low.circle(one), high.circle(two)
+        across, up = r1 - r0, high.height(two) - low.height(one)
+        frustum = np.pi / 3.0 * up * (r0**2 + r0 * r1 + r1**2) - low.cap(one)[1] - high.cap(two)[1]
+        square = across**2 + up**2
+        return frustum + 2.0 * np.pi * square * (0.5 * (r0 + r1) * bulge + up * tilt)
+
+    short: Array = np.zeros(turn.shape)
+    far: Array = np.full(turn.shape, most)
+    for _ in range(45):
+        middle = 0.5 * (short + far)
+        less = volume_of(*circles(middle)) < volume
+        short, far = np.where(less, middle, short), np.where(less, far, middle)
+    one, two = circles(0.5 * (short + far))
     (r0, _), (r1, _) = low.circle(one), high.circle(two)
     z0, z1 = low.height(one), high.height(two)
     across, up = r1 - r0, z1 - z0
     chord, mean = np.hypot(across, up), 0.5 * (r0 + r1)
-    (wet0, under0), (wet1, under1) = low.cap(one), high.cap(two)
-    missing = volume + under0 + under1 - np.pi / 3.0 * up * (r0**2 + r0 * r1 + r1**2)
-
-    def bulged(turn: Array) -> Array:
-        a, b = _segment(turn)
-        return 2.0 * np.pi * chord**2 * (mean * a + up * b)
-
-    least, most = np.full(chord.shape, -MOST), np.full(chord.shape, MOST)
-    for _ in range(40):
-        turn = 0.5 * (least + most)
-        more = bulged(turn) < missing
-        least, most = np.where(more, turn, least), np.where(more, most, turn)
     longer = 1.0 / np.sinc(turn / np.pi)
     with np.errstate(divide="ignore", invalid="ignore"):
         out = np.where(np.abs(turn) < 1e-4, turn / 6.0, 0.5 * (1.0 / turn - 1.0 / np.tan(turn)))
     area = 2.0 * np.pi * chord * longer * (mean + up * out)
-    energy = area - np.cos(np.radians(low.contact_angle)) * wet0
-    energy = energy - np.cos(np.radians(high.contact_angle)) * wet1
+    energy = area - np.cos(np.radians(low.contact_angle)) * low.cap(one)[0]
+    energy = energy - np.cos(np.radians(high.contact_angle)) * high.cap(two)[0]
     s = (np.arange(SEEN) + 0.5) / SEEN
-    r0, z0, r1, z1 = np.broadcast_arrays(r0, z0, r1, z1)
     r, z = on_arc(r0, z0, r1, z1, turn, s)
     fits = (low.clear(r, z) & high.clear(r, z) & (r > 0.0)).all(axis=-1)
-    fits &= np.abs(bulged(turn) - missing) < 1e-6 * volume
-    return np.where(fits, energy, np.inf), turn
+    fits &= np.abs(volume_of(one, two) - volume) < 1e-6 * volume
+    # the liquid has left a solid: no valley is beside that
+    left = np.minimum(one, two) <= NONE * most
+    return np.where(left, -np.inf, np.where(fits, energy, np.inf)), one, two
 
 
 def _segment(turn: Array) -> tuple[Array, Array]:

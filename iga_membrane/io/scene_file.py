@@ -27,7 +27,13 @@ from .scene_readers import FOREIGN, READERS, solver_limits
 SCHEMA = 1
 LARGEST_FILE = 10_000_000
 
-SCENES = ("sessile_droplet", "liquid_sheet", "asperity_cell", "film_between_rings")
+SCENES = (
+    "sessile_droplet",
+    "liquid_sheet",
+    "asperity_cell",
+    "film_between_rings",
+    "capillary_bridge",
+)
 
 
 @dataclass(frozen=True)

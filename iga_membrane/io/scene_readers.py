@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import SceneError
 from ..initial.closed_droplet import STARTS
 from ..initial.liquid import Discretization, Liquid
+from ..problems.capillary_bridge import capillary_bridge
 from ..problems.cell import asperity_cell
 from ..problems.droplet import sessile_droplet
 from ..problems.film import film_between_rings
@@ -17,7 +18,7 @@ from ..problems.scene import Scene
 from ..problems.sheet import liquid_sheet
 from ..solids import Sphere, Spheres
 from .scene_keys import later, membrane_of
-from .substrates import substrate_of
+from .substrates import facing_solid, substrate_of
 
 Tables = dict[str, Mapping[str, Any]]
 
@@ -151,19 +152,40 @@ def _particle(field: str, given: Mapping[str, Any]) -> Sphere:
     )
 
 
+def _bridge(data: Mapping[str, Any], tables: Tables) -> Scene:
+    liquid, gap = tables["liquid"], tables["gap"]
+    for field, table in (("liquid.volume", liquid), ("gap.distance", gap)):
+        if field.split(".")[1] not in table:
+            raise SceneError(f"{field}: missing; a capillary bridge needs it")
+    gravity = _gravity(tables["gravity"])
+    return capillary_bridge(
+        facing_solid("lower", tables["lower"]),
+        facing_solid("upper", tables["upper"]),
+        gap=gap["distance"],
+        volume=liquid["volume"],
+        liquid=Liquid(liquid.get("surface_tension", 1.0), liquid.get("density", 1.0)),
+        gravity=gravity,
+        discretization=Discretization(**tables["discretization"]),
+    )
+
+
 READERS: dict[str, Callable[[Mapping[str, Any], Tables], Scene]] = {
     "sessile_droplet": _droplet,
     "asperity_cell": _cell,
     "film_between_rings": _film,
     "liquid_sheet": _sheet,
+    "capillary_bridge": _bridge,
 }
 """Kind of scene to its reader, which takes the whole file and its tables."""
+BRIDGES = "lower", "upper", "gap"
 FOREIGN = {
-    "sessile_droplet": ("sheet", "cell", "rings"),
-    "asperity_cell": ("gravity", "particle", "droplet", "sheet", "rings"),
-    "film_between_rings": ("gravity", "substrate", "particle", "droplet", "sheet", "cell"),
-    "liquid_sheet": ("substrate", "droplet", "cell", "rings"),
-}
+    "sessile_droplet": ("sheet", "cell", "rings", *BRIDGES),
+    "asperity_cell": ("gravity", "particle", "droplet", "sheet", "rings", *BRIDGES),
+    "film_between_rings": ("gravity", "substrate", "particle", "droplet", "sheet", "cell",
+                           *BRIDGES),
+    "liquid_sheet": ("substrate", "droplet", "cell", "rings", *BRIDGES),
+    "capillary_bridge": ("substrate", "particle", "droplet", "sheet", "cell", "rings"),
+}  # fmt: skip
 """Kind of scene to the tables that do not belong to it."""
 
 

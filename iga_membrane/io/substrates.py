@@ -35,6 +35,24 @@ def substrate_of(table: Table) -> Solid | None:
     return _KINDS[kind](table, angle)
 
 
+def facing_solid(name: str, table: Table) -> Plane | Sphere:
+    """The solid below or above a bridge.
+
+    Parameters
+    ----------
+    name : of the table, "lower" or "upper".
+
+    Raises
+    ------
+    SceneError
+    """
+    kind = table.get("kind", "plane")
+    fields = {"plane": ("contact_angle",), "sphere": ("contact_angle", "radius")}[kind]
+    _check_fields(table, f'{name}.kind = "{kind}"', fields, fields, name)
+    angle = table["contact_angle"]
+    return Plane(angle) if kind == "plane" else Sphere(angle, table["radius"])
+
+
 def _angle(table: Table, kind: str) -> Any:
     """The contact angle, or the field in its place."""
     if "wettability" in table and "contact_angle" in table:

@@ -61,8 +61,11 @@ def frame_of(ends: Ends) -> tuple[tuple[float, float, float], Array]:
     first, second = ends
     if isinstance(first, Plane):
         return first.point, first.axes()
-    assert isinstance(second, Sphere)
-    way = np.subtract(second.center, first.center)
+    way = (
+        -second.unit_normal()
+        if isinstance(second, Plane)
+        else np.subtract(second.center, first.center)
+    )
     x, y, z = (float(c) for c in way / np.linalg.norm(way))
     axes = Plane(90.0, normal=(x, y, z)).axes()
     x, y, z = (float(c) for c in np.array(first.center) + first.radius * axes[:, 2])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arguments import checked
-from ..checks import POSITIVE, instance, listed, number, vector
+from ..checks import instance, listed, number, vector
 from ..errors import SceneError
 from ..initial.liquid import Discretization, Liquid, with_defaults
 from ..solids import Plane, Sphere
@@ -40,7 +40,7 @@ def _along_the_axis(field: str, value: Any) -> float:
 
 
 @family
-@checked(lower=SOLID, upper=SOLID, gap=POSITIVE, volume="liquid.volume", gravity=_along_the_axis)
+@checked(lower=SOLID, upper=SOLID, gap=GAP, volume="liquid.volume", gravity=_along_the_axis)
 def capillary_bridge(
     lower: Plane | Sphere,
     upper: Plane | Sphere,
@@ -81,18 +81,12 @@ def capillary_bridge(
     liquid, asked = with_defaults(liquid, discretization)
     gravity = float(np.ravel(gravity)[0])
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)
-    placed = _placed(lower, upper, gap)
-    flipped = isinstance(placed[1], Plane) and not isinstance(placed[0], Plane)
-    origin, axes = ((0.0, 0.0, gap), np.diag([1.0, -1.0, -1.0])) if flipped else (
-        (0.0, 0.0, 0.0), np.eye(3)
-    )  # fmt: skip
-    ends: Ends = placed[::-1] if flipped else placed
-    x, y, z = (tuple(float(a) for a in row) for row in axes)
-    scale = Scale(length, liquid.surface_tension, origin, (x, y, z))
+    ends = _placed(lower, upper, gap)
+    scale = Scale(length, liquid.surface_tension)
     scale.check_lengths("gap.distance", gap)
     acceleration = (0.0, 0.0, -gravity)
     weight = liquid.density * length**2 / liquid.surface_tension
-    bond = weight * np.array(acceleration) @ axes
+    bond = weight * np.array(acceleration)
     parts = Question(
         ends[0], asked, scale, bond, None, liquid, Contact(ends[0]), "conforming", _balls(ends)
     )
@@ -105,7 +99,7 @@ def capillary_bridge(
             "gap": gap,
             "volume": volume,
             "liquid": liquid,
-            "gravity": gravity,
+            "gravity": list(acceleration),
             "discretization": replace(asked, model=built.sector.model),
         },
     )
@@ -131,7 +125,10 @@ def capillary_bridge(
                 "density": liquid.density,
                 "volume": volume,
             },
-            "gravity": {"acceleration": abs(gravity), "direction": [0.0, 0.0, -np.sign(gravity)]},
+            "gravity": {
+                "acceleration": abs(gravity),
+                "direction": [0.0, 0.0, 1.0 if gravity < 0.0 else -1.0],
+            },
             "lower": described_substrate(_unplaced(lower)),
             "upper": described_substrate(_unplaced(upper)),
             "gap": {"distance": gap},

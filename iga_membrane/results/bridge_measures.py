@@ -26,19 +26,14 @@ def bridge_measures(
     """
     scale = scene.units
     second = _on_the_second(assembly, surface, multipliers, scene)
-    inside = assembly.copies * assembly.body_integral(surface, BodyDensity(1.0))
-    # what both carry is the liquid's weight
-    first = -inside * np.array(assembly.body.gradient) - second
-    flipped = bool(scale.axes[2, 2] < 0.0)
-    upper = scale.axes @ (first if flipped else second)
     areas = assembly.copies * np.array(assembly.edges.wet_areas(surface.points))
     radii = [
         _radius(term, area) for (term, _), area in zip(assembly.edges.wetted, areas, strict=True)
     ]
-    lower_radius, upper_radius = radii[::-1] if flipped else radii
+    lower_radius, upper_radius = radii
     neck = narrowest(surface, np.zeros(2))
     return {
-        "force": -float(upper[2]) * scale.force,
+        "force": -float(second[2]) * scale.force,
         "neck_radius": float(np.hypot(neck[0], neck[1])) * scale.length,
         "contact_radius_lower": lower_radius * scale.length,
         "contact_radius_upper": upper_radius * scale.length,

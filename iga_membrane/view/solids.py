@@ -13,6 +13,8 @@ from ..solids.wettability import varies
 if TYPE_CHECKING:
     from ..driver.solution import Solution
 
+SEEN_THROUGH = 0.35
+"""Opacity of a plate above the liquid."""
 DRY, WET = "#d9d2c5", "#cc4125"
 """Colours of solids, and of asperities that carry a part of the droplet."""
 PATTERN = ["#f3ead8", "#8c9bab"]
@@ -34,21 +36,19 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
     if isinstance(substrate, (SphereLattice, Spheres)):
         _add_asperities(plotter, pv, solution)
         return
+    for term in solution.scene.local_terms().wetting:
+        if term.level:  # a plane above the liquid, through which one sees it
+            plate = _plate(pv, solution, term.level, 1.0)
+            plotter.add_mesh(plate, color=DRY, ambient=0.3, opacity=min(opacity, SEEN_THROUGH))
     if isinstance(substrate, Sphere):
         # a membrane that covers the sphere and has sunk into it is shown on top
         sunk = solution.contact.get("max_penetration") if solution.scene.line_inside else None
         solid = _ball(pv, substrate.center, substrate.radius - 1.5 * (sunk or 0.0))
     elif isinstance(substrate, Plane):
-        local = scale.to_local(solution.surface.points)
-        reach = 1.35 * float(np.linalg.norm(local[:, :2], axis=1).max())
-        thick = 0.05 * reach
-        center = (0.0, 0.0, -0.5 * thick - 1e-3)
-        solid = pv.Cylinder(
-            center=center, direction=(0, 0, 1), radius=reach, height=thick, resolution=180
-        )
+        solid = _plate(pv, solution, 0.0, -1.0)
         if varies(substrate.contact_angle):
-            solid = pv.Disc(inner=0.0, outer=reach, r_res=ACROSS, c_res=2 * ACROSS)
-        solid.points = scale.to_world(np.asarray(solid.points, float))
+            solid = pv.Disc(inner=0.0, outer=_reach(solution), r_res=ACROSS, c_res=2 * ACROSS)
+            solid.points = scale.to_world(np.asarray(solid.points, float))
         look["smooth_shading"] = False
     elif substrate is not None:
         solid = _by_gap(pv, substrate, solution)
@@ -61,6 +61,25 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
         look |= {"scalars": "cosine", "cmap": PATTERN, "show_scalar_bar": False}
     opacity = opacity if solution.scene.kind == "liquid_sheet" else 1.0
     plotter.add_mesh(solid, opacity=opacity, **look)
+
+
+def _reach(solution: Solution) -> float:
+    """Radius of a plane that is drawn, in the scene's scale."""
+    local = solution.scene.units.to_local(solution.surface.points)
+    return 1.35 * float(np.linalg.norm(local[:, :2], axis=1).max())
+
+
+def _plate(pv: Any, solution: Solution, level: float, side: float) -> Any:
+    """A round plate with one face at a level of the scene's frame, the other above it (side 1) or
+    below (-1)."""
+    reach = _reach(solution)
+    thick = 0.05 * reach
+    center = (0.0, 0.0, level + side * (0.5 * thick + 1e-3))
+    plate = pv.Cylinder(
+        center=center, direction=(0, 0, 1), radius=reach, height=thick, resolution=180
+    )
+    plate.points = solution.scene.units.to_world(np.asarray(plate.points, float))
+    return plate
 
 
 def _ball(pv: Any, center: tuple[float, float, float], radius: float) -> Any:
