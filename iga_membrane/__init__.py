@@ -28,6 +28,7 @@ _HOME = {
     "dofs.spines": ("Motion", "Spines"),
     "solids": ("Nearest", "Plane", "Solid", "Sphere", "SphereLattice", "Spheres"),
     "solids.cylinder": ("Cylinder",),
+    "solids.disc": ("Disc",),
     "solids.height_map": ("HeightMap",),
     "solids.wettability": ("Wettability", "patch", "stripes"),
     "terms": ("Centroid", "GapTerm", "Gravity", "PlaneContactLine", "Pressure", "Scale",

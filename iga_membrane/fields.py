@@ -86,12 +86,12 @@ WETTABILITY: dict[str, Rule] = {
 """Fields of a pattern of contact angles."""
 FIELDS: dict[str, Rule] = {
     "liquid.surface_tension": POSITIVE,
-    "liquid.density": NOT_NEGATIVE,
+    "liquid.density": number,
     "liquid.volume": POSITIVE,
     "gravity.acceleration": NOT_NEGATIVE,
     "gravity.direction": direction,
     "substrate.kind": words(
-        "plane", "sphere", "sphere_lattice", "spheres", "height_map", "cylinder", "none"
+        "plane", "sphere", "sphere_lattice", "spheres", "height_map", "cylinder", "disc", "none"
     ),
     "substrate.contact_angle": partial(one_or_more, each=wet_angle),
     "substrate.radius": POSITIVE,
@@ -131,11 +131,13 @@ FIELDS: dict[str, Rule] = {
     "rings.half_height": POSITIVE,
     "rings.volume": POSITIVE,
     "rings.pressure": number,
-    "lower.kind": words("plane", "sphere"),
+    "lower.kind": words("plane", "sphere", "disc"),
     "lower.radius": POSITIVE,
+    "lower.edge": partial(number, above=0.0, most=180.0),
     "lower.contact_angle": wet_angle,
-    "upper.kind": words("plane", "sphere"),
+    "upper.kind": words("plane", "sphere", "disc"),
     "upper.radius": POSITIVE,
+    "upper.edge": partial(number, above=0.0, most=180.0),
     "upper.contact_angle": wet_angle,
     "gap.distance": POSITIVE,
     "discretization.space": words("bspline", "nurbs", "lagrange"),

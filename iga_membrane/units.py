@@ -48,11 +48,16 @@ def says_si(acceleration: float) -> bool:
 def implausible(
     acceleration: float, tension: float, density: float, volume: float | None
 ) -> tuple[str, ...]:
-    """What is hard to believe in a scene whose acceleration says that it is in SI."""
+    """What is hard to believe: a liquid that is lighter than nothing; numbers of a scene whose
+    acceleration says that it is in SI."""
+    lighter = (
+        f"liquid.density = {density:g}: the liquid is lighter than its surroundings, and rises "
+        "where others fall",
+    ) * (density < 0.0)
     if not says_si(acceleration):
-        return ()
+        return lighter
     given = zip(PLAUSIBLE.items(), (tension, density, volume), strict=True)
-    return tuple(
+    return lighter + tuple(
         f"{field} = {value:g}: gravity of {acceleration:g} reads as m/s^2, and {value:g} {unit} is "
         f"hard to believe (expected {least:g} to {most:g}); give all fields in SI, as iga.si does"
         for (field, (least, most, unit)), value in given

@@ -361,7 +361,8 @@ def _conormals(surface: Surface, support: Sliding) -> Array:
     row = net[:, -end] if along == 0 else net[-end]
     basis = surface.space.bases[along]
     tangent = basis.derivative_at_abscissae() @ row
-    normal = np.array([[0.0, 0.0, 1.0]])
+    # the second edge of a bridge lies on a plane above it
+    normal = np.array([[0.0, 0.0, 1.0 - 2.0 * end]])
     if support.solid is not None:
         normal = support.solid.normal(basis.matrix(basis.abscissae) @ row)
     outward = np.cross(tangent, normal)

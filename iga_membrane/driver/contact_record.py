@@ -43,7 +43,8 @@ def contact_record(
         cosine = np.clip(young_cosine(scene, surface, line, at), -1.0, 1.0)
         angle = float(np.degrees(np.arccos(cosine)))
         forces = vertical_forces(at, body, assembly.tension, angle)
-        support, solids = forces.push - forces.line, 1
+        pulled = forces.measured if line.pinned else forces.line
+        support, solids = forces.push - pulled, 1
     else:
         pulls = [
             pull_on_sphere(scene, assembly, surface, result.multipliers, which).total

@@ -15,9 +15,11 @@ from ..surface.surface import Surface
 from ..verification.evidence import Audit
 from ..verification.self_intersection import crossing
 from .acceptance import (
+    EQUILIBRIA,
     contact_objection,
     judge,
     leaves_its_asperity,
+    leaves_its_rim,
     overload,
     reaches_boundary,
     rests_on_a_point,
@@ -113,6 +115,13 @@ def _judged(found: Evidence, ending: Ending) -> Ending:
     return ending if point is None else Ending(*point)
 
 
+def _on_its_rim(found: Evidence, ending: Ending) -> Ending:
+    if ending.status not in EQUILIBRIA:
+        return ending
+    left = leaves_its_rim(found.scene, found.surface)
+    return ending if left is None else Ending(*left)
+
+
 def _meets_itself(found: Evidence, ending: Ending) -> Ending:
     contact = found.assembly.contact
     if ending.status is not Status.CONVERGED_STABLE or contact.lies or contact.passes:
@@ -165,6 +174,7 @@ REVISIONS: tuple[Callable[[Evidence, Ending], Ending], ...] = (
     _with_remedy,
     _without_verdict,
     _judged,
+    _on_its_rim,
     _meets_itself,
     _rounded,
     _sunk,

@@ -29,7 +29,7 @@ class Liquid:
     Attributes
     ----------
     surface_tension : gamma > 0.
-    density : rho_s >= 0.
+    density : rho_s, less that of its surroundings; negative where it is lighter.
     """
 
     surface_tension: float = 1.0

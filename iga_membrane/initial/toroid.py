@@ -17,6 +17,7 @@ import numpy as np
 
 from ..arrays import Array, Mask
 from ..solids import Plane, Sphere
+from ..solids.disc import Disc
 
 FLATTEST = 6.0
 """Contact angle of the start at least, degrees: a nearly tangent line finds its place from larger
@@ -47,18 +48,21 @@ class End:
     ----------
     radius : of the sphere, infinite for a plane; level : height of its point on the axis.
     side : 1 if it lies below the bridge, -1 above.
-    contact_angle : degrees, of the start.
+    contact_angle : degrees, of the start; rim : radius of the circle, where one holds it, else 0.
     """
 
     radius: float
     level: float
     side: float
     contact_angle: float
+    rim: float = 0.0
 
     @classmethod
     def of(cls, solid: Plane | Sphere, side: float) -> End:
         """Of a solid in the scene's scale."""
         angle = max(solid.contact_angle, FLATTEST)
+        if isinstance(solid, Disc):
+            return cls(np.inf, solid.point[2], side, angle, solid.radius)
         if isinstance(solid, Plane):
             return cls(np.inf, solid.point[2], side, angle)
         return cls(solid.radius, solid.center[2] + side * solid.radius, side, angle)
@@ -142,6 +146,8 @@ def least_energy_toroid(low: End, high: End, volume: float) -> Toroid:
     none, the toroid nearest to balance. The volume then tells where the circles are, those of a
     flat bridge to a small part of its height.
     """
+    if low.rim and high.rim:
+        return _between_rims(low, high, volume)
     turns: Array = np.linspace(-MOST, MOST, GRID)
     slants: Array = np.linspace(-STEEPEST, STEEPEST, GRID)
     steady = True
@@ -161,6 +167,27 @@ def least_energy_toroid(low: End, high: End, volume: float) -> Toroid:
         (float(high.circle(b)[0]), float(high.height(b))),
         turn,
     )
+
+
+def _between_rims(low: End, high: End, volume: float) -> Toroid:
+    """The toroid of a volume between two circles."""
+    one, two = np.array(low.rim), np.array(high.rim)
+    least, most = -MOST, MOST
+    for _ in range(60):
+        turn = 0.5 * (least + most)
+        more = float(_volume(low, high, one, two, np.array(turn))) < volume
+        least, most = (turn, most) if more else (least, turn)
+    return Toroid((low.rim, low.level), (high.rim, high.level), 0.5 * (least + most))
+
+
+def _volume(low: End, high: End, one: Array, two: Array, turn: Array) -> Array:
+    """Of the liquid between circles at ways from the axis, by half the turn of the arc."""
+    bulge, tilt = _segment(turn)
+    (r0, _), (r1, _) = low.circle(one), high.circle(two)
+    across, up = r1 - r0, high.height(two) - low.height(one)
+    frustum = np.pi / 3.0 * up * (r0**2 + r0 * r1 + r1**2) - low.cap(one)[1] - high.cap(two)[1]
+    square = across**2 + up**2
+    return frustum + 2.0 * np.pi * square * (0.5 * (r0 + r1) * bulge + up * tilt)
 
 
 def _valleys(energy: Array) -> Array:
@@ -216,10 +243,9 @@ def _energies(
     """Energies (a, b) of toroids of turns (a,) and slants (b,) of the chord, infinite where there
     is none of the volume, minus infinity without a circle; and the ways to their circles."""
     turn, slope = np.broadcast_arrays(turns[:, None], np.tan(slants))
-    bulge, tilt = _segment(turn)
     apart = high.level - low.level
     curved = 0.5 * (1.0 / low.radius + 1.0 / high.radius)
-    most = _widest(low, high, WIDER * volume)
+    most = max(_widest(low, high, WIDER * volume), low.rim, high.rim)
 
     def circles(way: Array) -> tuple[Array, Array]:
         """Ways whose mean is given; of the height between the circles the slant makes their
@@ -227,20 +253,13 @@ def _energies(
         off = 0.5 * slope * (apart + curved * way**2)
         ends = [(way - off, low.radius), (way + off, high.radius)]
         one, two = (np.clip(w, NONE * most, min(WIDEST * r, most)) for w, r in ends)
-        return one, two
-
-    def volume_of(one: Array, two: Array) -> Array:
-        (r0, _), (r1, _) = low.circle(one), high.circle(two)
-        across, up = r1 - r0, high.height(two) - low.height(one)
-        frustum = np.pi / 3.0 * up * (r0**2 + r0 * r1 + r1**2) - low.cap(one)[1] - high.cap(two)[1]
-        square = across**2 + up**2
-        return frustum + 2.0 * np.pi * square * (0.5 * (r0 + r1) * bulge + up * tilt)
+        return np.where(low.rim, low.rim, one), np.where(high.rim, high.rim, two)
 
     short: Array = np.zeros(turn.shape)
     far: Array = np.full(turn.shape, most)
     for _ in range(45):
         middle = 0.5 * (short + far)
-        less = volume_of(*circles(middle)) < volume
+        less = _volume(low, high, *circles(middle), turn) < volume
         short, far = np.where(less, middle, short), np.where(less, far, middle)
     one, two = circles(0.5 * (short + far))
     (r0, _), (r1, _) = low.circle(one), high.circle(two)
@@ -256,7 +275,7 @@ def _energies(
     s = (np.arange(SEEN) + 0.5) / SEEN
     r, z = on_arc(r0, z0, r1, z1, turn, s)
     fits = (low.clear(r, z) & high.clear(r, z) & (r > 0.0)).all(axis=-1)
-    fits &= np.abs(volume_of(one, two) - volume) < 1e-6 * volume
+    fits &= np.abs(_volume(low, high, one, two, turn) - volume) < 1e-6 * volume
     # the liquid has left a solid: no valley is beside that
     left = np.minimum(one, two) <= NONE * most
     return np.where(left, -np.inf, np.where(fits, energy, np.inf)), one, two

@@ -66,7 +66,7 @@ def _cell(data: Mapping[str, Any], tables: Tables) -> Scene:
 def _droplet(data: Mapping[str, Any], tables: Tables) -> Scene:
     liquid, substrate = tables["liquid"], tables["substrate"]
     needed = [("liquid.volume", liquid)]
-    if substrate.get("kind") != "none" and "wettability" not in substrate:
+    if substrate.get("kind") not in ("none", "disc") and "wettability" not in substrate:
         needed.append(("substrate.contact_angle", substrate))
     for field, table in needed:
         if field.split(".")[1] not in table:

@@ -13,6 +13,7 @@ from ..errors import SceneError
 from ..files import read_file
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..solids.cylinder import Cylinder
+from ..solids.disc import Disc
 from ..solids.height_map import HeightMap
 from ..solids.wettability import patch, stripes
 
@@ -47,10 +48,16 @@ def facing_solid(name: str, table: Table) -> Plane | Sphere:
     SceneError
     """
     kind = table.get("kind", "plane")
-    fields = {"plane": ("contact_angle",), "sphere": ("contact_angle", "radius")}[kind]
-    _check_fields(table, f'{name}.kind = "{kind}"', fields, fields, name)
-    angle = table["contact_angle"]
+    allowed, needed = _FACING[kind]
+    _check_fields(table, f'{name}.kind = "{kind}"', allowed, needed, name)
+    angle = table.get("contact_angle", 90.0)
+    if kind == "disc":
+        return _disc(table, angle)
     return Plane(angle) if kind == "plane" else Sphere(angle, table["radius"])
+
+
+def _disc(table: Table, angle: Any) -> Disc:
+    return Disc(angle, radius=table["radius"], edge=table.get("edge", 90.0))
 
 
 def _angle(table: Table, kind: str) -> Any:
@@ -61,7 +68,7 @@ def _angle(table: Table, kind: str) -> Any:
         )
     if "wettability" in table:
         return _field(table["wettability"])
-    angle = table.get("contact_angle")
+    angle = table.get("contact_angle", 90.0 if kind == "disc" else None)
     if isinstance(angle, list) and kind != "spheres":
         raise SceneError(f"substrate.contact_angle = {angle}: one number is needed here")
     if angle is None and kind != "none":
@@ -161,6 +168,7 @@ _KINDS: dict[str, Callable[[Table, Any], Solid | None]] = {
         angle, table["centers"], table["radii"], table.get("base")
     ),
     "height_map": _height_map,
+    "disc": _disc,
     "cylinder": lambda table, angle: Cylinder(
         angle, table["radius"], axis=table.get("axis", (0.0, 1.0, 0.0))
     ),
@@ -183,7 +191,14 @@ _FIELDS: dict[str, tuple[str, ...]] = {
     "height_map": ("contact_angle", "wettability", "shape", "arrangement", "offset", "scale",
                    *dict.fromkeys(name for names in _SHAPES.values() for name in names)),
     "cylinder": ("contact_angle", "wettability", "radius", "axis"),
+    "disc": ("contact_angle", "radius", "edge"),
 }  # fmt: skip
+_FACING: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "plane": (("contact_angle",), ("contact_angle",)),
+    "sphere": (("contact_angle", "radius"), ("contact_angle", "radius")),
+    "disc": (("contact_angle", "radius", "edge"), ("radius",)),
+}
+"""Kinds of solids that a bridge joins to the fields that they have, and that they need."""
 _NEEDED: dict[str, tuple[str, ...]] = {
     "none": (),
     "plane": (),
@@ -192,4 +207,5 @@ _NEEDED: dict[str, tuple[str, ...]] = {
     "spheres": ("centers", "radii"),
     "height_map": ("shape",),
     "cylinder": ("radius",),
+    "disc": ("radius",),
 }

@@ -17,11 +17,12 @@ from ..dofs.boundary_conditions import Fixed, Sliding, Support
 from ..errors import SceneError
 from ..initial.toroid import End, least_energy_toroid
 from ..solids import Plane, Solid, Sphere
+from ..solids.disc import Disc
 from ..surface.ring import axisymmetric, ring_space
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
 from .recipe import Recipe
 from .scene import Scene
-from .smooth_foot import rest_of
+from .smooth_foot import rest_of, rim_line
 from .spec import BALL, Foot, Question, sector_of
 from .wet_rims import WetRims
 
@@ -118,11 +119,12 @@ def easy_gap(parts: Question, ends: Ends) -> float | None:
     scale, (first, second), gap = parts.scale, ends, gap_between(ends)
     if gap <= CLOSE * scale.length:
         return None
+    if isinstance(second, Plane):
+        return CLOSE * scale.length  # a plane floats nowhere
     rest = rest_of(first, parts.liquid, scale, parts.down)
     top = scale.length * (rest.lift + float(rest.pancake(np.ones(1))[1][0]))
     deep = 1.0 + float(np.cos(np.radians(second.contact_angle)))
-    # a plane floats nowhere
-    floating = -np.inf if isinstance(second, Plane) else top - second.radius * deep
+    floating = top - second.radius * deep
     return max(near for near in (CLOSE * scale.length, floating) if near < gap)
 
 
@@ -149,11 +151,11 @@ def bridge(parts: Question, ends: Ends) -> Foot:
     wet = tuple(
         (edge, _local(scale, solid, height), side)
         for edge, solid, height, side in zip(edges, ends, (0.0, level), (1.0, -1.0), strict=True)
-        if solid.contact_angle == 0.0
+        if solid.contact_angle == 0.0 and not isinstance(solid, Disc)
     )
     supports: list[Support] = [
         Fixed(edge)
-        if solid.contact_angle == 0.0
+        if solid.contact_angle == 0.0 or isinstance(solid, Disc)
         else Sliding(edge, level=height)
         if isinstance(solid, Plane)
         else Sliding(edge, solid)
@@ -189,6 +191,8 @@ def _check_bridge(parts: Question, ends: Ends) -> None:
 
 def _local(scale: Scale, solid: Plane | Sphere, level: float) -> Plane | Sphere:
     """A solid in the scale; a plane lies at a level."""
+    if isinstance(solid, Disc):
+        return replace(solid, point=(0.0, 0.0, level), radius=solid.radius / scale.length)
     if isinstance(solid, Plane):
         return Plane(solid.contact_angle, (0.0, 0.0, level))
     return scale.local_sphere(solid)
@@ -196,6 +200,8 @@ def _local(scale: Scale, solid: Plane | Sphere, level: float) -> Plane | Sphere:
 
 def _line(gamma: float, solid: Plane | Sphere, edge: str, toward: Array, level: float) -> LineTerm:
     """The contact line on a solid, whose liquid lies in a direction; a plane lies at a level."""
+    if isinstance(solid, Disc):
+        return rim_line(gamma, solid, edge, level)
     if isinstance(solid, Plane):
         return PlaneContactLine(gamma, solid.contact_angle, edge, level=level)
     x, y, z = (float(a) for a in toward)

@@ -51,12 +51,12 @@ def capillary_bridge(
     gravity: float | Sequence[float] = 0.0,
     discretization: Discretization | None = None,
 ) -> Scene:
-    """Liquid between two solids on the z axis, which it wets at their contact angles.
+    """Liquid between two solids on the z axis, which it wets at their contact angles, or to a rim.
 
     Parameters
     ----------
-    lower, upper : plane or sphere with its contact angle, 0 (perfectly wet) to 180 degrees; where
-        they lie follows from the gap.
+    lower, upper : plane, disc or sphere with its contact angle, 0 (perfectly wet) to 180 degrees;
+        where they lie follows from the gap.
     gap : distance between the facing surfaces along z; the lower one has its top at z = 0.
     volume : of liquid, > 0.
     liquid : surface tension and density; both 1 by default.
@@ -141,12 +141,12 @@ def capillary_bridge(
 def _placed(lower: Plane | Sphere, upper: Plane | Sphere, gap: float) -> Ends:
     """The solids where they face each other."""
     below: Plane | Sphere = (
-        Plane(lower.contact_angle)
+        replace(lower, point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
         if isinstance(lower, Plane)
         else replace(lower, center=(0.0, 0.0, -lower.radius), motion="fixed")
     )
     above: Plane | Sphere = (
-        Plane(upper.contact_angle, (0.0, 0.0, gap), (0.0, 0.0, -1.0))
+        replace(upper, point=(0.0, 0.0, gap), normal=(0.0, 0.0, -1.0))
         if isinstance(upper, Plane)
         else replace(upper, center=(0.0, 0.0, gap + upper.radius), motion="fixed")
     )
@@ -155,7 +155,7 @@ def _placed(lower: Plane | Sphere, upper: Plane | Sphere, gap: float) -> Ends:
 
 def _unplaced(solid: Plane | Sphere) -> Plane | Sphere:
     if isinstance(solid, Plane):
-        return Plane(solid.contact_angle)
+        return replace(solid, point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
     return replace(solid, center=(0.0, 0.0, -solid.radius))
 
 
@@ -176,5 +176,6 @@ def _terms(
     if any(acceleration):
         terms.append(Gravity(liquid.density, acceleration))
     # between two planes nothing tells where it is
-    loose = "" if _balls(ends) else "xy"
+    slides = not _balls(ends) and all(support.kind == "sliding" for support in built.supports)
+    loose = "xy" if slides else ""
     return terms + [Centroid(axis) for axis in loose if axis not in built.sector.mirrored]

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 from ..errors import SceneError
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.disc import Disc
 from ..solids.wettability import least_angle, varies
 from .any_solid_foot import through_any
 from .one_asperity import one_asperity
-from .smooth_foot import on_a_line, on_the_plane
+from .smooth_foot import on_a_line, on_a_rim, on_the_plane
 from .spec import Foot, Question
 from .whole_foot import on_an_area, through_one
 
@@ -20,6 +21,8 @@ def foot_of(parts: Question) -> Foot:
     """The kind of foot that a substrate and its contact angle make."""
     solid, way = parts.substrate, parts.contact_line
     _check_way(solid, way)
+    if isinstance(solid, Disc):
+        return on_a_rim(parts)
     if isinstance(solid, (SphereLattice, Spheres)) and way == "conforming":
         return on_a_line(replace(parts, substrate=one_asperity(solid, parts.scale.length)))
     if isinstance(solid, Sphere) and way == "trimmed":

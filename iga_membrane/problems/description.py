@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import Array
 from ..initial.liquid import Liquid
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.disc import Disc
 from ..solids.wettability import varies
 
 
@@ -50,6 +51,12 @@ def described_substrate(substrate: Solid | None) -> dict[str, Any]:
             }
             top = substrate.center == (0.0, 0.0, -substrate.radius)
             return size if top else size | {"center": list(substrate.center)}
+        case Disc():
+            disc = {"kind": "disc", "radius": substrate.radius, "edge": substrate.edge}
+            disc |= {"contact_angle": substrate.contact_angle}
+            if substrate.point == (0.0, 0.0, 0.0) and substrate.normal == (0.0, 0.0, 1.0):
+                return disc
+            return disc | {"point": list(substrate.point), "normal": list(substrate.normal)}
         case Plane():
             plane = {"kind": "plane"} | _angle(substrate)
             if substrate == Plane(substrate.contact_angle):

@@ -24,10 +24,12 @@ from ..initial.profiles import (
     rounded,
 )
 from ..solids import Plane, Sphere
+from ..solids.disc import Disc
 from ..splines import Grading, points_of
 from ..surface.ring import axisymmetric, drop_space
 from ..surface.surface import Surface
 from ..terms import LineTerm, PlaneContactLine, Scale, SphereContactLine
+from ..terms.rim_line import RimLine
 from .spec import BALL, Foot, Question, sector_of
 
 
@@ -86,6 +88,43 @@ def on_the_plane(parts: Question) -> Foot:
     start = local.moved(scale.to_world(local.points))
     line = PlaneContactLine(gamma, 180.0)
     return Foot(start, sector, mesh, [line], [Fixed("xi2=0")], grading, tangent=True)
+
+
+def on_a_rim(parts: Question) -> Foot:
+    """The liquid-gas surface alone, its edge at rest on the rim of a disc: from the cap of a sphere
+    that holds the volume.
+
+    Raises
+    ------
+    SceneError
+        A start or a penalty.
+    """
+    disc, mesh, scale = parts.substrate, parts.asked.mesh(), parts.scale
+    assert isinstance(disc, Disc)
+    if parts.start is not None or parts.law.penalty is not None:
+        raise SceneError("substrate: a droplet on a disc needs its own start, no penalty")
+    pancake = least_energy_pancake(_cap_angle(disc.radius / scale.length), 0.0, BALL)
+    line = rim_line(parts.liquid.surface_tension, disc, "xi2=0", 0.0)
+    rest = Rest(pancake, 0.0, line, Sliding("xi2=0"))
+    grading = _grading(90.0, abs(float(parts.bond[2])), pancake.length)
+    start = _start(rest, mesh, grading, scale)
+    return Foot(start, sector_of(mesh, parts.bond), mesh, [line], [Fixed("xi2=0")], grading)
+
+
+def rim_line(gamma: float, disc: Disc, edge: str, level: float) -> RimLine:
+    """The contact line on a disc's rim."""
+    return RimLine(gamma, disc.contact_angle, edge, level=level, turn_of_rim=disc.edge)
+
+
+def _cap_angle(radius: float) -> float:
+    """Angle in degrees at which a cap with the volume of the unit ball has a rim."""
+    low, high = 0.0, np.pi
+    for _ in range(100):
+        angle = 0.5 * (low + high)
+        c, s = np.cos(angle), np.sin(angle)
+        volume = np.pi / 3.0 * (2.0 + c) * (1.0 - c) ** 2 * (radius / s) ** 3
+        low, high = (angle, high) if volume < BALL else (low, angle)
+    return float(np.degrees(0.5 * (low + high)))
 
 
 def _on_a_point(parts: Question, mesh: Mesh, sector: Sector) -> Foot:

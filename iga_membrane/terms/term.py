@@ -334,11 +334,13 @@ class WettingLine(LineTerm):
     covered : whether the membrane covers the wetted area, too.
     toward : unit vector out of the solid to the liquid.
     level : of a plane, its height.
+    pinned : whether it rests on a rim, with an angle of its own.
     """
 
     gamma: float
     covered: bool = False
     level: float = 0.0
+    pinned: ClassVar[bool] = False
     toward = (0.0, 0.0, 1.0)
     forms: ClassVar[tuple[str, ...]] = ("lines", "wetting")
 

@@ -10,6 +10,7 @@ from .contact import Contact
 from .gap import GapTerm, LocalGap
 from .gravity import Gravity
 from .line_load import NormalLineLoad
+from .rim_line import RimLine
 from .sphere_wetting import SphereContactLine
 from .stabilization import Stabilization
 from .tension import SurfaceTension
@@ -26,8 +27,9 @@ class Terms(tuple[Term, ...]):
     areas : energies per area of the membrane; surface_tensions : those of the liquid.
     bodies : energies per volume, without constraints; weights, pressures : some of them.
     constraints : body integrals that are held; volumes, centroids : some of them.
-    lines : energies along edges; wetting : contact lines; on_spheres : those on spheres; others :
-        those that are neither contact lines nor, as those that are pressed, hold them on solids.
+    lines : energies along edges; wetting : contact lines; on_spheres : those on spheres; rims :
+        those at rest on rims of discs; others : those that are neither contact lines nor, as those
+        that are pressed, hold them on solids.
     gaps : laws of the gap in a scene's scale; laws : in the user's units.
     obstacles : solids that the membrane may lie on; passed : those that it passes through.
     stabilizations : what holds the control points in the membrane's plane.
@@ -44,6 +46,7 @@ class Terms(tuple[Term, ...]):
     lines: list[LineTerm]
     wetting: list[WettingLine]
     on_spheres: list[SphereContactLine]
+    rims: list[RimLine]
     others: list[LineTerm]
     pressed: list[NormalLineLoad]
     gaps: list[LocalGap]

@@ -170,7 +170,8 @@ def _ending(
         line = contact_line(surface, term.edge, 2 * points[0], term.face)
         young = young_cosine(scene, surface, term, line)
         angle = float(np.arccos(np.clip(young, -1.0, 1.0)))
-        cosine = max(cosine, cosine_error(line, young), key=abs)
+        if not term.pinned:
+            cosine = max(cosine, cosine_error(line, young), key=abs)
         gap, nearest = _nearest(surface, points, sector, term.face)
         found.setdefault("deepest", nearest)
         if sphere is None:
