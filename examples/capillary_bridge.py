@@ -115,7 +115,7 @@ def draw(curves: dict[str, Curve]) -> None:
             axes.axvline(one.rupture[0], color=colour, lw=0.6, ls=":")
     gaps = np.linspace(0.005, 0.95, 100) * lian()
     axes.plot(gaps, [willett(gap) for gap in gaps], "k--", lw=0.8, label="spheres, Willett's fit")
-    axes.set(xlabel="gap / R", ylabel=r"force / ($\gamma R$)", ylim=(0.0, None))
+    axes.set(xlabel="gap / R", ylabel=r"force / ($\gamma R$)", yscale="log")
     axes.legend(frameon=False)
     figure.savefig("bridge_forces.png", dpi=150)
 

@@ -155,8 +155,8 @@ def leaves_its_rim(scene: Scene, surface: Surface) -> tuple[Status, str, str] | 
         young, most = term.contact_angle, term.contact_angle + term.turn_of_rim
         if angles.min() < young - GIBBS:
             way = (
-                f"recedes over the face, at {angles.min():.4g} degrees of {young:g} at least; give a "
-                "Plane of that contact angle in its place"
+                f"recedes over the face, at {angles.min():.4g} degrees of {young:g} at least; "
+                "give a Plane of that contact angle in its place"
             )
         elif angles.max() > most + GIBBS:
             way = f"runs down the side, at {angles.max():.4g} degrees of {most:g} at most"

@@ -14,6 +14,7 @@ import numpy as np
 from ..arguments import checked
 from ..arrays import Array
 from ..checks import choice, wet_angle
+from ..errors import SceneError
 from ..solids import Plane, Solid
 from ..splines import EdgeTable, line
 from .term import CEILING_EDGES, LINE_EDGES, BodyDensity, Scale, WettingLine
@@ -48,8 +49,14 @@ class PlaneContactLine(WettingLine):
     name = "wetting"
 
     def __post_init__(self) -> None:
-        if not self.covered:
-            choice("edge", self.edge, CEILING_EDGES if self.level else LINE_EDGES)
+        if self.level and self.edge not in CEILING_EDGES:
+            raise SceneError(
+                f"level = {self.level:g}, edge = {self.edge!r}: a plane off z = 0 lies above the "
+                f"liquid, where the membrane's edge is {CEILING_EDGES[0]!r}; name that or leave "
+                "the level out"
+            )
+        if not (self.covered or self.level):
+            choice("edge", self.edge, LINE_EDGES)
 
     @property
     def strength(self) -> float:

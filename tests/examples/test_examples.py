@@ -322,3 +322,16 @@ def test_jobs_of_a_first_day():
     spent = load("../benchmarks/first_day").main(here=True)
     assert len(spent) == 5
     assert max(cpu for cpu, _ in spent.values()) < 60.0
+
+
+def test_capillary_bridge():
+    example = load("capillary_bridge")
+    curves = example.main(part=(0.1, 0.5, 1.3))
+    for one in curves.values():
+        assert np.all(np.diff(one.forces) < 0.0)
+        assert one.rupture is not None
+        assert one.rupture[1] - one.rupture[0] < 1e-3 * one.rupture[1]
+    spheres = curves["spheres"]
+    fits = [example.willett(gap) for gap in spheres.gaps]
+    assert spheres.forces == pytest.approx(fits, rel=0.04)
+    assert spheres.rupture[0] == pytest.approx(example.lian(), rel=0.05)

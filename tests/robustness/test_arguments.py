@@ -112,6 +112,10 @@ GIVEN = {
     "Wettability": lambda: {"cosine": lambda x: (0.0 * x[..., 0], 0.0 * x)},
     "patch": lambda: {"inside": 60.0, "outside": 120.0, "radius": 1.0, "border": 0.1},
     "stripes": lambda: {"first": 60.0, "second": 120.0, "period": 1.0, "border": 0.1},
+    "capillary_bridge": lambda: {
+        "lower": iga.Plane(60.0), "upper": iga.Plane(60.0), "gap": 0.3, "volume": 0.5
+    },
+    "Disc": lambda: {"radius": 1.0},
     "check_derivatives": lambda: {"scene": drop().scene},
     "close_pole": lambda: {"space": ring()},
     "contact_line": lambda: {"surface": drop().surface},
@@ -296,9 +300,10 @@ TAKES = {
         Cylinder.radius Grading.first HeightMap.contact_angle HeightMap.scale patch.inside
         patch.outside patch.radius patch.border stripes.first stripes.second stripes.period
         stripes.border
-        Gravity.density_of_liquid Liquid.surface_tension Liquid.density NormalLineLoad.gamma
+        Liquid.surface_tension NormalLineLoad.gamma Disc.contact_angle Disc.radius Disc.edge
+        capillary_bridge.gap capillary_bridge.volume capillary_bridge.gravity
         Plane.contact_angle PlaneContactLine.gamma PlaneContactLine.contact_angle Ring.radius
-        Scale.length Scale.tension Scene.liquid_density SolverOptions.max_cpu_s
+        Scale.length Scale.tension SolverOptions.max_cpu_s
         SolverOptions.max_memory_gb Sphere.contact_angle Sphere.radius Sphere.density
         SphereContactLine.gamma SphereLattice.contact_angle SphereLattice.spacing
         Spheres.contact_angle Spheres.radii Stabilization.mu SurfaceTension.gamma
@@ -322,6 +327,7 @@ TAKES = {
         Space.leaders Space.ruled Spines.directions Table.second Table.kinds
         TrimmedContactLine.toward
         asperity_cell.liquid asperity_cell.discretization contact_line.solid
+        capillary_bridge.liquid capillary_bridge.discretization
         convergence_study.model convergence_study.options critical_value.options drop_space.kink
         film_between_rings.liquid fit_profile.liquid film_between_rings.discretization
         liquid_sheet.particle
@@ -387,6 +393,7 @@ TAKES = {
         Contact.penalty asperity_cell.penalty film_between_rings.volume sweep.timeout
     """,
     "-1, five, half": """
+        Gravity.density_of_liquid Liquid.density Scene.liquid_density Sliding.level
         Crossing.value critical_value.low critical_value.high plot_side.azimuth
     """,
     "list, words": """

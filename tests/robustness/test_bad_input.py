@@ -95,7 +95,25 @@ contact_angle = 180.0
 centers = [[0.0, 0.0, -1.0]]
 radii = [1.0]
 """
-WITH = {"particle": SHEET, "sheet": SHEET, "path": SHEET, "cell": CELL, "rings": FILM,
+BRIDGE = """
+scene = "capillary_bridge"
+[liquid]
+volume = 0.5
+[lower]
+kind = "disc"
+radius = 0.6
+contact_angle = 60.0
+edge = 90.0
+[upper]
+kind = "disc"
+radius = 0.6
+contact_angle = 60.0
+edge = 90.0
+[gap]
+distance = 0.3
+"""
+WITH = {"lower": BRIDGE, "upper": BRIDGE, "gap": BRIDGE,
+        "particle": SHEET, "sheet": SHEET, "path": SHEET, "cell": CELL, "rings": FILM,
         "centers": LIST, "radii": LIST}  # fmt: skip
 """A scene to which a table or a field belongs, where it is not the droplet."""
 
@@ -118,7 +136,7 @@ def label(table, key):
 @pytest.fixture(scope="module", autouse=True)
 def _imported():
     """Every scene can be read, and what reading needs is imported before it is timed."""
-    for text in (DROPLET, SHEET, CELL, FILM, LIST):
+    for text in (DROPLET, SHEET, CELL, FILM, LIST, BRIDGE):
         iga.read_scene(tables(text))
 
 
@@ -196,9 +214,9 @@ OUT = {
     "file": ("", "\0"),
 } | {key: ("no such word",) for key in TEXTS if key != "parameter"}
 FREE = {("sheet", "pressure"), ("sheet", "volume"), ("cell", "pressure"), ("rings", "pressure"),
-        ("substrate", "amplitude"), ("substrate", "height")}  # fmt: skip
+        ("substrate", "amplitude"), ("substrate", "height"), ("liquid", "density")}  # fmt: skip
 """Fields of which any finite number is right: the volume of a sheet has a sign, a dimple's height
-too."""
+and the density of a liquid that is lighter than its surroundings too."""
 
 
 def below(rule):

@@ -55,7 +55,6 @@ def test_the_good_scene_is_read():
         ("liquid.volume", 0.0, "volume must be > 0"),
         ("liquid.volume", -1e-9, "liquid.volume = -1e-09: volume must be > 0"),
         ("liquid.surface_tension", 0.0, "surface_tension must be > 0"),
-        ("liquid.density", -1.0, "density must be >= 0"),
         ("gravity.acceleration", -9.81, "acceleration must be >= 0"),
         ("gravity.direction", [0, 0, 0], "must not be zero"),
         ("gravity.direction", [0, 1], "three numbers"),
