@@ -139,10 +139,10 @@ def rule_of(hint: Any) -> Rule | None:
 
 def _meant(hint: Any) -> Any:
     """What an alias of an annotation stands for: those of numpy are objects from 2.5 on."""
-    alias = get_origin(hint) or hint
-    value = getattr(alias, "__value__", hint)
-    inside = get_args(hint)
-    return value[inside] if inside and value is not hint else value
+    while (value := getattr(get_origin(hint) or hint, "__value__", hint)) is not hint:
+        inside = get_args(hint)
+        hint = value[inside] if inside else value
+    return hint
 
 
 def _or_none(rule: Rule) -> Rule:
@@ -208,7 +208,7 @@ def _any_of(kinds: tuple[Any, ...]) -> Rule | None:
     """One of several annotations; a wrong value is told the first one's rule."""
     if str in kinds and {Path, os.PathLike} & {get_origin(kind) or kind for kind in kinds}:
         kinds = (Path, *(kind for kind in kinds if kind is NoneType))
-    if ARRAY_LIKE <= set(kinds):
+    if set(kinds) >= ARRAY_LIKE:
         return _or_none(checks.array)
     rules = [rule_of(kind) for kind in kinds if kind is not NoneType]
     if None in rules:
