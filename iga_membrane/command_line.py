@@ -78,7 +78,8 @@ COMMANDS: dict[str, tuple[str, tuple[str, ...], tuple[Argument, ...]]] = {
         (
             _argument("scene", help="scene file to write, .toml"),
             _argument("--kind", default="sessile_droplet",
-                      help="sessile_droplet, liquid_sheet, asperity_cell or film_between_rings"),
+                      help="sessile_droplet, liquid_sheet, asperity_cell, capillary_bridge or "
+                      "film_between_rings"),
         ),
     ),
     "solve": (

@@ -289,3 +289,20 @@ def test_a_liquid_of_the_table_makes_a_scene_si():
     assert tense.at("liquid.surface_tension", 0.07).unit_system == "SI"
     with pytest.raises(iga.SceneError, match="quantity of volume"):
         scene.at("liquid.volume", "4 mm")
+
+
+def test_every_measure_has_a_dimension():
+    """A measure that the table of names forgets would have no unit."""
+    coarse = {"discretization": iga.Discretization(elements=6, degree=3)}
+    scenes = [
+        iga.sessile_droplet(iga.Plane(100), volume=1.0, **coarse),
+        iga.sessile_droplet(iga.Sphere(100, 2.0, (0.0, 0.0, -2.0)), volume=1.0, **coarse),
+        iga.liquid_sheet(iga.Sphere(90, 1.0, (0.0, 0.0, -0.2)), size=5.0, boundary="circle",
+                         **coarse),
+        iga.film_between_rings(half_height=0.4, **coarse),
+        iga.capillary_bridge(iga.Plane(60), iga.Sphere(60, 1.0), gap=0.3, volume=0.3),
+        iga.asperity_cell(iga.Sphere(120.0, 1.0), size=4.0, pressure=0.1),
+    ]  # fmt: skip
+    for scene in scenes:
+        measures = iga.solve(scene, on_fail="return").measures
+        assert not [name for name in measures if not dimension_of(name)], scene.kind

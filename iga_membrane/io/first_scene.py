@@ -74,6 +74,24 @@ shape = "square"                    # square | circle
 size = "40 um"                      # distance between asperities
 pressure = "200 Pa"
 {_MESH}""",
+    "capillary_bridge": f"""\
+# A liquid bridge between a sphere and a plane.
+scene = "capillary_bridge"
+
+{_LIQUID}volume = "0.5 uL"
+
+[lower]
+kind = "plane"                      # plane | sphere | disc
+contact_angle = 60.0                # degrees
+
+[upper]
+kind = "sphere"
+radius = "2 mm"
+contact_angle = 60.0
+
+[gap]
+distance = "0.3 mm"
+{_MESH}""",
     "film_between_rings": f"""\
 # A film, or a liquid bridge if it has a volume, between two rings.
 scene = "film_between_rings"

@@ -24,6 +24,7 @@ from ..problems.droplet import sessile_droplet
 from ..problems.scene import Scene
 from ..quantities import DIMENSIONLESS, SI, Quantity, has_units, unit_of
 from ..solids import Plane
+from ..solids.disc import Disc
 from .axisymmetric import Fit, Profile, nearest_profile
 from .cut import APEX, BASE, MIDDLE, RADIUS, WEIGHT, cut
 from .local_angles import side_angles
@@ -35,9 +36,9 @@ FEWEST = 12
 """Points at least, three for each number of a profile."""
 LEANS = 4.0
 """Difference of the angles left and right, over its standard error, from which a droplet leans."""
-SAME = 0.02
-"""Contact radius by which the droplet that is solved may differ, relative: the rest of its mesh and
-of the fit are 1e-3."""
+BARELY = 1.0
+"""Degrees of the mouth of a needle that water wets, and short of its side: its rim holds the line
+at any angle between."""
 LEANS_AT_LEAST = 1.0
 """Degrees of that difference at least: cubics are wrong by a tenth of them."""
 WEIGHTS = (1.0, 0.25, 4.0)
@@ -77,7 +78,8 @@ class ProfileFit(Told):
 
     @cached_property
     def scene(self) -> Scene:
-        """The droplet with these values, to be solved, changed or put on other solids.
+        """The droplet with these values, to be solved, changed or put on other solids: on a plane
+        with its contact angle, or hanging from a needle whose rim holds it.
 
         Raises
         ------
@@ -89,8 +91,9 @@ class ProfileFit(Told):
         hangs = float(np.mean(self.curve[:, 1])) < 0.0
         way = -1.0 if hangs else 1.0  # the frame's z points from the base into the liquid
         volume = self.values["volume"]
+        held = Disc(BARELY, radius=self.values["contact_radius"], edge=180.0 - 2.0 * BARELY)
         return sessile_droplet(
-            Plane(contact_angle=self.values["contact_angle"]),
+            held if hangs else Plane(contact_angle=self.values["contact_angle"]),
             volume=Quantity(volume, "volume") if self.units == SI else volume,
             liquid=self.liquid,
             gravity=[0.0, 0.0, way * self.gravity[2]],
@@ -104,15 +107,7 @@ class ProfileFit(Told):
         ------
         SceneError, SolveError
         """
-        found = solve(self.scene)
-        radius = self.values["contact_radius"]
-        if abs(found.measures["contact_radius"] - radius) > SAME * radius:
-            raise SceneError(
-                "fit: a droplet of this angle and volume on a plane has a contact radius of "
-                f"{found.measures['contact_radius']:.4g}, the one in the points {radius:.4g}: it "
-                "is held by an edge; take its values and its curve"
-            )
-        return found
+        return solve(self.scene)
 
     def overview(self) -> Overview:
         """The values with their standard errors and units."""
