@@ -28,7 +28,7 @@ def judge(
 ) -> tuple[Status, str]:
     """Status of a converged state."""
     slipping = {a: f for a, f in scene.lateral_load.items() if a in _unheld(scene)}
-    if slipping:
+    if slipping and not any(line.holds for line in scene.by_form.lines):
         pull = float(np.linalg.norm(list(slipping.values())))
         force = pull * inside * scene.units.force
         return Status.NO_EQUILIBRIUM, (

@@ -154,10 +154,11 @@ def least_energy_toroid(low: End, high: End, volume: float) -> Toroid:
     for zoom in range(1 + ZOOMS):
         energy, one, two = _energies(low, high, turns, slants, volume)
         objective = _valleys(energy)
-        steady = bool(np.isfinite(objective).any()) if not zoom else steady
+        found = bool(np.isfinite(objective).any())
+        steady = steady if zoom else found
         if not steady:
             objective = _mismatch(energy, one, two)
-        elif zoom:
+        elif not found:
             objective = np.where(np.isfinite(energy), energy, np.inf)
         i, k = np.unravel_index(objective.argmin(), energy.shape)
         a, b, turn = one[i, k], two[i, k], float(turns[i])
@@ -241,7 +242,8 @@ def _energies(
     low: End, high: End, turns: Array, slants: Array, volume: float
 ) -> tuple[Array, Array, Array]:
     """Energies (a, b) of toroids of turns (a,) and slants (b,) of the chord, infinite where there
-    is none of the volume, minus infinity without a circle; and the ways to their circles."""
+    is none of the volume, minus infinity where it leaves or swallows a solid; and the ways to
+    their circles."""
     turn, slope = np.broadcast_arrays(turns[:, None], np.tan(slants))
     apart = high.level - low.level
     curved = 0.5 * (1.0 / low.radius + 1.0 / high.radius)
@@ -276,9 +278,10 @@ def _energies(
     r, z = on_arc(r0, z0, r1, z1, turn, s)
     fits = (low.clear(r, z) & high.clear(r, z) & (r > 0.0)).all(axis=-1)
     fits &= np.abs(_volume(low, high, one, two, turn) - volume) < 1e-6 * volume
-    # the liquid has left a solid: no valley is beside that
-    left = np.minimum(one, two) <= NONE * most
-    return np.where(left, -np.inf, np.where(fits, energy, np.inf)), one, two
+    # the liquid has left a solid, or swallowed it: no valley is beside that
+    ends = (one, low.radius), (two, high.radius)
+    gone = [(way <= NONE * most) | (way >= WIDEST * r) for way, r in ends]
+    return np.where(gone[0] | gone[1], -np.inf, np.where(fits, energy, np.inf)), one, two
 
 
 def _segment(turn: Array) -> tuple[Array, Array]:

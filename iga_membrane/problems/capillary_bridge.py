@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..arguments import checked
-from ..checks import instance, listed, number, vector
+from ..checks import instance, listed, number, shown, vector
 from ..errors import SceneError
 from ..initial.liquid import Discretization, Liquid, with_defaults
 from ..solids import Plane, Sphere
-from ..solids.wettability import varies
 from ..terms import Centroid, Contact, Gravity, Scale, SurfaceTension, Term, Volume
 from ..units import implausible
 from .bridge import Ends, bridge, easy_gap
@@ -76,8 +75,11 @@ def capillary_bridge(
         place.
     """
     for name, solid in (("lower", lower), ("upper", upper)):
-        if varies(solid.contact_angle):
-            raise SceneError(f"{name}.contact_angle: must be one number; a bridge is round")
+        if not isinstance(solid.contact_angle, (int, float)):
+            raise SceneError(
+                f"{name}.contact_angle = {shown(solid.contact_angle)}: must be one number; a "
+                "bridge is round, and has no memory"
+            )
     liquid, asked = with_defaults(liquid, discretization)
     gravity = float(np.ravel(gravity)[0])
     length = (3.0 * volume / (4.0 * np.pi)) ** (1.0 / 3.0)

@@ -11,6 +11,7 @@ from ..arrays import Array
 from ..initial.liquid import Liquid
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
 from ..solids.disc import Disc
+from ..solids.hysteresis import Hysteresis
 from ..solids.wettability import varies
 
 
@@ -90,6 +91,8 @@ def _angle(substrate: Solid) -> dict[str, Any]:
     angle = substrate.contact_angle
     if varies(angle):
         return {"wettability": angle.described()}
+    if isinstance(angle, Hysteresis):
+        return {"contact_angle": {"receding": angle.receding, "advancing": angle.advancing}}
     return {"contact_angle": np.asarray(angle).tolist()}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arguments import checked
 from ..arrays import Array
-from ..checks import either, instance, vector, words
+from ..checks import either, instance, vector, wet_angle, words
 from ..errors import SceneError
 from ..fields import as_acceleration
 from ..initial.closed_droplet import STARTS
@@ -44,6 +44,7 @@ from .droplet_ways import (
 )
 from .free import frame_of, seat_of
 from .hints import hints
+from .memory import placed_on
 from .moving import check_fixed, fixed
 from .one_asperity import discretizations as asperity_lines
 from .osman_sauer import WholeMembrane
@@ -67,6 +68,7 @@ ROUNDING = 1e-12
     penalty="solver.penalty",
     penetration_tolerance="solver.penetration_tolerance",
     contact_line=words(*CONTACT_LINES),
+    placed_at=wet_angle,
 )
 def sessile_droplet(
     substrate: Solid | None,
@@ -82,6 +84,7 @@ def sessile_droplet(
     contact_line: str = "auto",
     particles: Sequence[Sphere] = (),
     membrane: WholeMembrane | None = None,
+    placed_at: float | None = None,
 ) -> Scene:
     """Droplet of a volume on a plane, on top of a sphere, on asperities, or free.
 
@@ -111,6 +114,8 @@ def sessile_droplet(
         "adhesion", it lies on asperities that attract it, for angles near 180 degrees; "auto"
         chooses: on one fixed particle the membrane ends, and where that fails passes through it.
     particles : spheres on its surface, with contact angles, densities and motions.
+    placed_at : angle at which a droplet is placed on a plane with hysteresis, within it; by default
+        that of the mean cosine.
     membrane : the paper's formulation, with its own penalty: below 180 degrees on a plane, instead
         of a contact line as the membrane's edge; at 180 degrees on a plane or asperities.
 
@@ -121,6 +126,7 @@ def sessile_droplet(
         have; a start below the substrate.
     """
     liquid, mesh = with_defaults(liquid, discretization)
+    given, substrate = substrate, placed_on(substrate, placed_at, particles)
     if membrane is not None:
         penalty = membrane.penalty_of(substrate, penalty)
     grains = check_particles(particles)
@@ -152,7 +158,8 @@ def sessile_droplet(
     recipe = Recipe(
         "sessile_droplet",
         {
-            "substrate": substrate,
+            "substrate": given,
+            "placed_at": placed_at,
             "volume": volume,
             "liquid": liquid,
             "gravity": list(cast(Sequence[float], gravity)),
@@ -164,7 +171,7 @@ def sessile_droplet(
             "penetration_tolerance": penetration_tolerance,
         },
     )
-    described = described_droplet(substrate, volume, liquid, acceleration, hold, grains)
+    described = described_droplet(given, volume, liquid, acceleration, hold, grains)
     pull = float(np.linalg.norm(acceleration))
     scene = Scene(
         built.surface,

@@ -12,19 +12,23 @@ from ..arguments import checked
 from ..arrays import Array, Index
 from ..checks import direction, either, instance, wet_angle
 from .fan import Fan, chart_fan
+from .hysteresis import Hysteresis
 from .nearest import Nearest
 from .wettability import Field, varies
 
 
 @dataclass(frozen=True)
-@checked("substrate", contact_angle=either(wet_angle, instance(Field)), normal=direction)
+@checked(
+    "substrate", contact_angle=either(wet_angle, instance(Field, Hysteresis)), normal=direction
+)
 class Plane:
     """Half space below a plane.
 
     Attributes
     ----------
     contact_angle : Young's angle in degrees, through the liquid, 0 < angle <= 180; 0, perfectly
-        wet, only where a liquid bridges two solids; or a :class:`.Wettability`, under a droplet.
+        wet, only where a liquid bridges two solids; or, under a droplet, a :class:`.Wettability` or
+        a :class:`.Hysteresis`.
     point : a point of the plane.
     normal : out of the solid, any length > 0.
     """

@@ -305,6 +305,8 @@ class LineTerm(Term):
 
     edge: str
     forms: ClassVar[tuple[str, ...]] = ("lines", "others")
+    holds: ClassVar[bool] = False
+    """Whether it keeps a droplet from sliding."""
 
     @property
     @abstractmethod

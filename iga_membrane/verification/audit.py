@@ -201,18 +201,23 @@ def _ending(
     found["volume"] = missing_volume(scene.local_terms(), inside)
     if not stands_free(scene):
         return found
+    held = any(other.holds for other in scene.local_terms().others)
     weight = float(body.gradient[2] * inside)
     if foot is None:
         # of the weight, unless it is nothing beside what balances at the line
         missing, size = weight + float(pull[2]), max(abs(weight), NOTHING * carried, TINY)
     else:
         forces = vertical_forces(foot, body, tension, standing)
-        missing = forces.push - forces.line - weight - float(pull[2])
-        size = abs(forces.push) + abs(forces.line) + abs(weight + float(pull[2]))
+        # where a line is held its angle is its own
+        drawn = forces.measured if held else forces.line
+        missing = forces.push - drawn - weight - float(pull[2])
+        size = abs(forces.push) + abs(drawn) + abs(weight + float(pull[2]))
     found["force"] = abs(missing) / size
     loose = [axis not in sector.mirrored for axis in "xy"]
     if any(loose):
         aside = np.array(body.gradient[:2]) * inside + pull[:2]
+        if foot is not None and held:
+            aside -= tension * (foot.arc @ foot.conormal[:, :2])
         found["sideways"] = float(np.hypot(*(aside * loose))) / size
     return found
 

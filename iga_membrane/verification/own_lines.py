@@ -29,6 +29,10 @@ def slope_of(term: LineTerm, edge: EdgeTable, surface: Surface, motion: Array) -
     reach = float(np.abs(motion).max())
     if not reach:
         return 0.0
+    if term.holds:
+        # its law bends on a scale of its own, below that of differences
+        pull = term.forces(edge, surface.points, term.strength, BodyDensity())
+        return float((pull * motion[edge.functions]).sum())
     step = STEP * surface.size / reach
     there, back = (energy_of(term, edge, surface.points + h * motion) for h in (step, -step))
     return (there - back) / (2.0 * step)

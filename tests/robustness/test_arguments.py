@@ -68,6 +68,10 @@ def pulled():
     return iga.liquid_sheet(ball, size=5.0, boundary="circle")
 
 
+def remembering(volume):
+    return iga.sessile_droplet(iga.Plane(iga.Hysteresis(80.0, 110.0)), volume=volume)
+
+
 def meshed(mesh):
     return angled(90.0)
 
@@ -116,6 +120,8 @@ GIVEN = {
         "lower": iga.Plane(60.0), "upper": iga.Plane(60.0), "gap": 0.3, "volume": 0.5
     },
     "Disc": lambda: {"radius": 1.0},
+    "Hysteresis": lambda: {"receding": 80.0, "advancing": 110.0},
+    "evolve": lambda: {"scene_of": remembering, "values": [1.0, 1.1]},
     "check_derivatives": lambda: {"scene": drop().scene},
     "close_pole": lambda: {"space": ring()},
     "contact_line": lambda: {"surface": drop().surface},
@@ -300,7 +306,8 @@ TAKES = {
         Cylinder.radius Grading.first HeightMap.contact_angle HeightMap.scale patch.inside
         patch.outside patch.radius patch.border stripes.first stripes.second stripes.period
         stripes.border
-        Liquid.surface_tension NormalLineLoad.gamma Disc.contact_angle Disc.radius Disc.edge
+        Liquid.surface_tension NormalLineLoad.gamma Disc.contact_angle Disc.radius
+        Disc.edge Hysteresis.receding
         capillary_bridge.gap capillary_bridge.volume capillary_bridge.gravity
         Plane.contact_angle PlaneContactLine.gamma PlaneContactLine.contact_angle Ring.radius
         Scale.length Scale.tension SolverOptions.max_cpu_s
@@ -334,7 +341,8 @@ TAKES = {
         liquid_sheet.liquid liquid_sheet.discretization liquid_sheet.start liquid_sheet.membrane
         plot.focus plot.limits plot_phases.curve pull_off.options ring_space.kink
         self_cleaning.options sessile_droplet.liquid sessile_droplet.discretization
-        sessile_droplet.start sessile_droplet.penalty sessile_droplet.membrane solve.options
+        evolve.options sessile_droplet.placed_at sessile_droplet.start
+        sessile_droplet.penalty sessile_droplet.membrane solve.options
         sweep.executor sweep.options tensor_space.weights trace.options
     """,
     "five": """
@@ -359,6 +367,7 @@ TAKES = {
         animate.path plot_fit.path plot_curves.path progress_bar.text
         plot_curves.x plot_phases.path plot_phases.x plot_phases.y
         plot_phases.of plot_section.path plot_side.path sessile_droplet.hold trace.parameter
+        evolve.parameter
     """,
     "truth": """
         Basis.periodic Crossing.rising PlaneContactLine.covered SolverOptions.audit
@@ -372,7 +381,7 @@ TAKES = {
     """,
     "class": """
         Discretization.space HeightMap.height critical_value.measure pull_off.report solve.report
-        sweep.scene_of trace.report
+        sweep.scene_of trace.report evolve.report
     """,
     "class, function": "Wettability.cosine",
     "None, five": """
