@@ -4,12 +4,15 @@ fails."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..assembly.lagrangian import Assembly
+from ..linalg.bordered import Bordered
+from ..linalg.inverse_root import SingularMatrix
 from ..problems.scene import Ramp, Scene
 from ..results.contact_patches import substrate_patches
 from ..status import Status
@@ -132,6 +135,8 @@ class _Stepper:
         result = path.attempt(self._assembly, scene, phase)
         wet, value = _wet_set(self._assembly, scene, result), self._ramp.value(load)
         path.steps.append(LoadStep(load, len(result.iterations), result.status, value, wet))
+        if result.status is None:
+            _judge(self._assembly, result)
         return scene, result
 
     def _keep(self, load: float, scene: Scene, result: NewtonResult) -> None:
@@ -167,6 +172,15 @@ class _Stepper:
                 ahead.beyond = load, found.smallest
         self._assembly.load(path.scene)
         self._aim = _aim(ahead, self._assembly, path, self._ramp)
+
+
+def _judge(assembly: Assembly, result: NewtonResult) -> None:
+    """Count the negative eigenvalues at a converged state: those of the last iteration are of the
+    state before its step, which near a limit is another side."""
+    motion = assembly.motion(result.surface)
+    system = assembly.system(result.surface, motion.directions, result.multipliers)
+    with suppress(SingularMatrix):
+        result.index = Bordered(system.matrix, system.constraint_gradients).index
 
 
 def _aim(ahead: Foretold, assembly: Assembly, path: LoadPath, ramp: Ramp) -> float | None:

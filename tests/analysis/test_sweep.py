@@ -283,6 +283,7 @@ def killed_and_resumed(tmp_path, kills, points, pause, rng):
     return killed
 
 
+@pytest.mark.slow
 def test_a_killed_sweep_loses_only_what_was_in_flight(tmp_path):
     killed = killed_and_resumed(tmp_path, 2, 8, 0.3, random.Random(2))
     assert killed >= 1

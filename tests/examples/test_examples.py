@@ -179,6 +179,7 @@ def test_textures(tmp_path):
     assert np.cos(np.radians(angle)) == pytest.approx(wenzel, abs=0.05)
 
 
+@pytest.mark.slow
 def test_pillars():
     example = load("pillars")
     round_, flat = example.main(rims=(0.15, 0.1), radius=0.15, elements=48)
@@ -283,6 +284,7 @@ def test_parameter_sweep(tmp_path):
     assert np.all(heights[:, 0] > heights[:, 1])
 
 
+@pytest.mark.slow
 def test_critical_angle():
     assert load("critical_angle").main().value == pytest.approx(144.05640220715, abs=1e-5)
 
@@ -324,6 +326,7 @@ def test_jobs_of_a_first_day():
     assert max(cpu for cpu, _ in spent.values()) < 60.0
 
 
+@pytest.mark.slow
 def test_capillary_bridge():
     example = load("capillary_bridge")
     curves = example.main(part=(0.1, 0.5, 1.3))

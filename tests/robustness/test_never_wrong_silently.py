@@ -71,9 +71,8 @@ def test_a_hold_without_volume_reports_its_force():
     assert solution.hold_force[0] == pytest.approx(-weight, rel=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("angle", "bond"), [(0.5, 100.0), pytest.param(1.0, 1000.0, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("angle", "bond"), [(0.5, 100.0), (1.0, 1000.0)])
 def test_a_solver_at_a_loss_does_not_claim_a_limit(angle, bond):
     solution = iga.solve(
         droplet(angle, bond), iga.SolverOptions(min_load_step=0.02), on_fail="return"

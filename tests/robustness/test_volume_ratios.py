@@ -123,6 +123,7 @@ def test_asperities_too_small_to_resolve_are_refused_by_name():
         on_lattice(150.0, 1e9)
 
 
+@pytest.mark.slow
 def test_a_droplet_between_asperities_rolls_to_better_ones_unless_it_is_held():
     """In the full model its eigenvalue is negative too."""
     lattice = iga.SphereLattice(180.0, 0.2, 0.45, offset=(0.225, 0.225))

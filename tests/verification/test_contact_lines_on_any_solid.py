@@ -149,7 +149,13 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+LONG = "pillars", "tilted, full model", "stripes on a bump"
+"""Of which a derivative costs seconds."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in LONG else []) for n in SCENES]
+)
 def test_every_term_has_exact_derivatives(name):
     for term, errors in iga.check_derivatives(SCENES[name]()).items():
         assert errors.gradient < 1e-6, term
@@ -188,6 +194,7 @@ def test_an_own_solid_carries_contact_lines_as_ours_does():
     assert line.line.arc.sum() == pytest.approx(same.line.arc.sum(), rel=1e-7)
 
 
+@pytest.mark.slow
 def test_nothing_depends_on_where_a_texture_stands():
     """An egg carton shifted by half a period along both axes is the same surface."""
     period = 0.6

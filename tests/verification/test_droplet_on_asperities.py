@@ -122,7 +122,7 @@ def test_a_penalty_sinks_by_the_pressure_over_it():
     assert "penetration_tolerance" in refused.message
 
 
-@pytest.mark.parametrize("penalty", some((5e4, 1e6, 1e9), {2}))
+@pytest.mark.parametrize("penalty", some((5e4, 1e6, 1e9), {0}))
 def test_a_hard_penalty_sinks_by_the_pressure_over_it_on_the_same_mesh(penalty):
     solution = rough(penalty=penalty, penetration_tolerance=0.2)
     assert solution.success, solution.message
