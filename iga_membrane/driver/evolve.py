@@ -123,13 +123,8 @@ def evolve(
     started = thread_time()
     first = record("scene_of(value)", called(scene_of, asked[0]), Scene)
     hysteresis = hysteresis_of(first)
-    reached = [solve(first, options, on_fail="return")]
-    angle = float(first.by_form.wetting[0].contact_angle)
-    held = np.full(first.surface.space.count, np.cos(np.radians(angle)))
-    memory = Memory(reached[0].surface, held)
-    heat = [0.0]
-    if reached[0].success:
-        reached[0] = _measured(_by_young(reached[0], hysteresis), memory, hysteresis)
+    placed, memory = _placed(first, hysteresis, options)
+    reached, heat = [placed], [0.0]
     for k, value in enumerate(asked[1:] if reached[0].success else [], 1):
         scene = record("scene_of(value)", called(scene_of, value), Scene)
         with until(started + options.max_cpu_s):
@@ -144,6 +139,20 @@ def evolve(
     if not path.success and on_fail == "raise":
         raise SolveError(f"{path.end.status.name}: {path.end.message}", path.end)
     return path
+
+
+def _placed(
+    scene: Scene, hysteresis: Hysteresis, options: SolverOptions
+) -> tuple[Solution, Memory]:
+    """The droplet where it is placed, and what its line remembers."""
+    (line,) = scene.by_form.wetting
+    assert isinstance(line, PlaneContactLine)
+    solution = solve(scene, options, on_fail="return")
+    held = np.full(scene.surface.space.count, np.cos(np.radians(line.contact_angle)))
+    memory = Memory(solution.surface, held)
+    if not solution.success:
+        return solution, memory
+    return _measured(_by_young(solution, hysteresis), memory, hysteresis), memory
 
 
 def _by_young(solution: Solution, hysteresis: Hysteresis) -> Solution:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..solids import Plane, Solid, Sphere, SphereLattice, Spheres
+from ..solids.disc import Disc
 from ..solids.fan import on_surface
 from ..solids.wettability import varies
 
@@ -28,7 +29,7 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
     ----------
     opacity : of the particles.
     """
-    substrate, scale = solution.scene.substrate, solution.scene.units
+    substrate = solution.scene.substrate
     look: dict[str, Any] = {"color": DRY, "ambient": 0.3, "smooth_shading": True}
     for each in solution.scene.particles:
         if each != substrate:
@@ -38,22 +39,12 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
         return
     for term in solution.scene.local_terms().wetting:
         if term.level:  # a plane above the liquid, through which one sees it
-            plate = _plate(pv, solution, term.level, 1.0)
+            plate = _plate(pv, solution, term.level, 1.0, _reach(solution))
             plotter.add_mesh(plate, color=DRY, ambient=0.3, opacity=min(opacity, SEEN_THROUGH))
-    if isinstance(substrate, Sphere):
-        # a membrane that covers the sphere and has sunk into it is shown on top
-        sunk = solution.contact.get("max_penetration") if solution.scene.line_inside else None
-        solid = _ball(pv, substrate.center, substrate.radius - 1.5 * (sunk or 0.0))
-    elif isinstance(substrate, Plane):
-        solid = _plate(pv, solution, 0.0, -1.0)
-        if varies(substrate.contact_angle):
-            solid = pv.Disc(inner=0.0, outer=_reach(solution), r_res=ACROSS, c_res=2 * ACROSS)
-            solid.points = scale.to_world(np.asarray(solid.points, float))
-        look["smooth_shading"] = False
-    elif substrate is not None:
-        solid = _by_gap(pv, substrate, solution)
-    else:
+    if substrate is None:
         return
+    solid = _mesh_of(pv, substrate, solution)
+    look["smooth_shading"] = not isinstance(substrate, Plane)
     angle: Any = substrate.contact_angle
     if varies(angle):
         solid["cosine"], _ = angle.at(np.asarray(solid.points, float))
@@ -63,16 +54,32 @@ def add_solids(plotter: Any, pv: Any, solution: Solution, opacity: float) -> Non
     plotter.add_mesh(solid, opacity=opacity, **look)
 
 
+def _mesh_of(pv: Any, substrate: Solid, solution: Solution) -> Any:
+    """The surface of a solid under the membrane and a little beside it."""
+    if isinstance(substrate, Sphere):
+        # a membrane that covers the sphere and has sunk into it is shown on top
+        sunk = solution.contact.get("max_penetration") if solution.scene.line_inside else None
+        return _ball(pv, substrate.center, substrate.radius - 1.5 * (sunk or 0.0))
+    if isinstance(substrate, Disc):
+        return _plate(pv, solution, 0.0, -1.0, substrate.radius / solution.scene.units.length)
+    if not isinstance(substrate, Plane):
+        return _by_gap(pv, substrate, solution)
+    if not varies(substrate.contact_angle):
+        return _plate(pv, solution, 0.0, -1.0, _reach(solution))
+    solid = pv.Disc(inner=0.0, outer=_reach(solution), r_res=ACROSS, c_res=2 * ACROSS)
+    solid.points = solution.scene.units.to_world(np.asarray(solid.points, float))
+    return solid
+
+
 def _reach(solution: Solution) -> float:
     """Radius of a plane that is drawn, in the scene's scale."""
     local = solution.scene.units.to_local(solution.surface.points)
     return 1.35 * float(np.linalg.norm(local[:, :2], axis=1).max())
 
 
-def _plate(pv: Any, solution: Solution, level: float, side: float) -> Any:
-    """A round plate with one face at a level of the scene's frame, the other above it (side 1) or
-    below (-1)."""
-    reach = _reach(solution)
+def _plate(pv: Any, solution: Solution, level: float, side: float, reach: float) -> Any:
+    """A round plate of a radius with one face at a level of the scene's frame, the other above it
+    (side 1) or below (-1)."""
     thick = 0.05 * reach
     center = (0.0, 0.0, level + side * (0.5 * thick + 1e-3))
     plate = pv.Cylinder(
