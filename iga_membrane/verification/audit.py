@@ -30,12 +30,10 @@ from ..surface.ring import rational_matrix
 from ..surface.surface import Surface
 from ..terms import BodyDensity, NormalLineLoad, WettingLine
 from ..terms.terms import Terms
-from .balance import Loads, line_balance
+from .balance import Loads, body_balance, line_balance
 from .evidence import Audit
 from .own_lines import nodal_forces, outward_pull
 
-NOTHING = 1e-2
-"""Weight over the forces of line and pressure on a sphere below which these are the measure."""
 AT_A_TIME = 100
 """Elements that are checked at a time: so many fit a processor's cache."""
 
@@ -201,47 +199,7 @@ def _ending(
     found["volume"] = missing_volume(scene.local_terms(), inside)
     if not stands_free(scene):
         return found
-    return found | _balance(scene, body, inside, pull, carried, foot, standing)
-
-
-def _balance(
-    scene: Scene,
-    body: BodyDensity,
-    inside: float,
-    pull: Array,
-    carried: float,
-    foot: ContactLine | None,
-    standing: float,
-) -> dict[str, float]:
-    """Relative defects of the balance of forces of a liquid that its solids alone carry.
-
-    Parameters
-    ----------
-    inside : its volume.
-    pull : (3,) force on spheres and planes above it; carried : sum of the sizes of its parts.
-    foot : the line on the plane z = 0, if there is one; standing : angle there, degrees.
-    """
-    found: dict[str, float] = {}
-    terms, mirrored = scene.local_terms(), scene.sector.mirrored
-    held = any(other.holds for other in terms.others)
-    weight = float(body.gradient[2] * inside)
-    if foot is None:
-        # of the weight, unless it is nothing beside what balances at the line
-        missing, size = weight + float(pull[2]), max(abs(weight), NOTHING * carried, TINY)
-    else:
-        forces = vertical_forces(foot, body, terms.tension, standing)
-        # where a line is held its angle is its own
-        drawn = forces.measured if held else forces.line
-        missing = forces.push - drawn - weight - float(pull[2])
-        size = abs(forces.push) + abs(drawn) + abs(weight + float(pull[2]))
-    found["force"] = abs(missing) / size
-    loose = [axis not in mirrored for axis in "xy"]
-    if any(loose):
-        aside = np.array(body.gradient[:2]) * inside + pull[:2]
-        if foot is not None and held:
-            aside -= terms.tension * (foot.arc @ foot.conormal[:, :2])
-        found["sideways"] = float(np.hypot(*(aside * loose))) / size
-    return found
+    return found | body_balance(scene, body, inside, pull, carried, foot, standing)
 
 
 def _tilt(surface: Surface, contact: Obstacle) -> float | None:

@@ -13,13 +13,15 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..assembly.lagrangian import TINY
 from ..problems.scene import Scene
-from ..results.contact_line import ContactLine, contact_line
+from ..results.contact_line import ContactLine, contact_line, vertical_forces
 from ..surface.surface import Surface
 from ..terms import BodyDensity
 
 FLAT = 1e-6
 """Vertical forces over the tension along all edges below which rounding is part of them: a membrane
 whose slopes are smaller is flat to every measure."""
+NOTHING = 1e-2
+"""Weight over the forces of line and pressure on a sphere below which these are the measure."""
 
 
 class Loads:
@@ -141,3 +143,43 @@ def _halves(
         loads.missing([pulls[0], -across], least, ~beyond),
         loads.missing([pulls[1], across], least, beyond),
     )
+
+
+def body_balance(
+    scene: Scene,
+    body: BodyDensity,
+    inside: float,
+    pull: Array,
+    carried: float,
+    foot: ContactLine | None,
+    standing: float,
+) -> dict[str, float]:
+    """Relative defects of the balance of forces of a liquid that its solids alone carry.
+
+    Parameters
+    ----------
+    inside : its volume.
+    pull : (3,) force on spheres and planes above it; carried : sum of the sizes of its parts.
+    foot : the line on the plane z = 0, if there is one; standing : angle there, degrees.
+    """
+    found: dict[str, float] = {}
+    terms, mirrored = scene.local_terms(), scene.sector.mirrored
+    held = any(other.holds for other in terms.others)
+    weight = float(body.gradient[2] * inside)
+    if foot is None:
+        # of the weight, unless it is nothing beside what balances at the line
+        missing, size = weight + float(pull[2]), max(abs(weight), NOTHING * carried, TINY)
+    else:
+        forces = vertical_forces(foot, body, terms.tension, standing)
+        # where a line is held its angle is its own
+        drawn = forces.measured if held else forces.line
+        missing = forces.push - drawn - weight - float(pull[2])
+        size = abs(forces.push) + abs(drawn) + abs(weight + float(pull[2]))
+    found["force"] = abs(missing) / size
+    loose = [axis not in mirrored for axis in "xy"]
+    if any(loose):
+        aside = np.array(body.gradient[:2]) * inside + pull[:2]
+        if foot is not None and held:
+            aside -= terms.tension * (foot.arc @ foot.conormal[:, :2])
+        found["sideways"] = float(np.hypot(*(aside * loose))) / size
+    return found

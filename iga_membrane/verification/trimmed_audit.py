@@ -24,7 +24,6 @@ from ..terms import BodyDensity, WettingLine
 from ..terms.trimmed import Line
 from .audit import (
     AT_A_TIME,
-    NOTHING,
     cosine_error,
     density_at,
     edge_forces,
@@ -34,7 +33,7 @@ from .audit import (
     scatter,
     stands_free,
 )
-from .balance import Loads, line_balance
+from .balance import NOTHING, Loads, line_balance
 from .evidence import Audit
 
 DENSE = 12
