@@ -33,7 +33,13 @@ def blocks(page):
     return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
 
 
-LONG = ("docs/start.md", "docs/guides/particles.md", "docs/guides/every_name.md")
+LONG = (
+    "docs/start.md",
+    "docs/guides/particles.md",
+    "docs/guides/every_name.md",
+    "docs/guides/bridges.md",
+    "docs/guides/textures.md",
+)
 """Pages whose code takes more than some seconds."""
 
 

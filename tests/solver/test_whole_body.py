@@ -44,6 +44,7 @@ def test_a_film_gives_way_sideways_where_the_closed_form_says(share, radius, mod
     assert found.status is (stable if share < 1.0 else iga.Status.CONVERGED_SADDLE)
 
 
+@pytest.mark.slow
 def test_a_film_that_no_volume_makes_stable_is_not_followed_to_none():
     """Its ramp is unstable from its first value on, 0, next to which no bracket is narrow."""
     found = iga.solve(film(1.1 * FILM, "full", volume=1e-3), on_fail="return")

@@ -104,6 +104,7 @@ def test_energies_on_a_bump_converge_at_twice_the_degree():
     assert errors[1] < 1e-7
 
 
+@pytest.mark.slow
 def test_every_model_of_a_flat_droplet_gives_the_same():
     """Below 90 degrees the outer part of the folded patch hangs together at its folds only."""
     solid = iga.HeightMap.bump(0.2, 0.8, contact_angle=60.0)

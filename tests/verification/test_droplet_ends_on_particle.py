@@ -56,6 +56,7 @@ def test_forces_converge_and_balance(case):
     check_convergence_and_balance(meshes, sideways=1e-4)
 
 
+@pytest.mark.slow
 def test_half_model_agrees_with_full():
     half = solved(**ENDS)
     full = iga.solve(scene(particle(), hold="xy", model="full", **ENDS))

@@ -41,6 +41,7 @@ def check_forces(solution, allowed=1e-3):
     assert solution.contact["max_penetration"] <= 1e-2 * RADIUS
 
 
+@pytest.mark.slow
 def test_the_papers_droplet_through_the_command_line(tmp_path):
     (tmp_path / "scene.toml").write_text(
         f'scene = "sessile_droplet"\n[liquid]\nvolume = {UNIT_VOLUME!r}\n'

@@ -100,6 +100,7 @@ def test_droplet_about_its_particle_is_refused():
         iga.sessile_droplet(None, volume=UNIT_VOLUME, particles=[iga.Sphere(90.0, 0.2)])
 
 
+@pytest.mark.slow
 def test_moving_particle_of_held_droplet_finds_its_place_off_the_axis():
     """The droplet's frame turns with the particle on the way."""
     particle = iga.Sphere(90.0, 0.5, (1.0, 0.0, 0.01), motion="vertical")

@@ -200,6 +200,7 @@ def test_motions_that_a_scene_lacks_are_refused():
         iga.Sphere(90.0, 1.0, motion="sideways")
 
 
+@pytest.mark.slow
 def test_length_of_the_plane_s_normal_does_not_matter():
     """Lines are unit vectors, and verdicts are the forces themselves."""
     particle = iga.Sphere(90.0, 0.2, (0.82, 0.0, 1.12), 2.0, "resting")

@@ -129,6 +129,7 @@ def limit():
     return limit_of_stability((1.0, 1.0), (60.0, 60.0), (0.5, 0.8), 0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "gap", [0.698, *(pytest.param(gap, marks=pytest.mark.slow) for gap in (0.74, 0.9))]
 )
@@ -160,6 +161,7 @@ def test_path_in_the_gap_ends_at_the_loss_of_stability():
     assert path.bracket.hi == pytest.approx(end, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_path_in_the_contact_angle_comes_through():
     def at(angle):
         return scene((1.0, 1.0), (angle, angle), 0.05, 0.02, discretization=ROUND)
